@@ -276,8 +276,7 @@ bool Contact<Real>::touches(const Vec3Array<Real>& x) const {
 
 template <class Real>
 Real Contact<Real>::gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) const {
-  Vec3<Real> p = Vec3<Real>::Zero();
-  for (std::size_t k = 0; k < row.count; ++k) p += x[at_index(row.particle[k])] * row.weight[k];
+  const Vec3<Real> p = weighted(row, x);
   const Real distance = distance_from(shapes_, at_index(row.collider), p);
   return distance < Real(kFarAway) ? distance : row.normal.dot(p) - row.offset;
 }

@@ -57,16 +57,4 @@ struct Corners {
   }
 };
 
-/// The same on round objects, told quickly and not too well.
-template <class Real>
-struct CornerBound {
-  Real span2 = 0;  ///< no point is farther from the nearest of them, squared [m^2]
-
-  /// @param least  distance that they keep from the core of an object [m]
-  /// @param most   that a point must be from there to be off [m]
-  bool clear(Real least, Real most) const {
-    return least > 0 && least * least - span2 > most * most;
-  }
-};
-
 }  // namespace weft

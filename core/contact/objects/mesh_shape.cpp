@@ -245,13 +245,8 @@ MeshShape<Real> prepare_mesh(const TriangleMesh& mesh) {
 /// In double precision: at a sharp ridge or corner a small error would change sides.
 template <class Real>
 MeshDistance<Real> distance_to_triangle(const MeshShape<Real>& mesh, Index t, const Vec3<Real>& p) {
-  assert(at_index(t) < mesh.triangles.size());
-  const Triangle& triangle = mesh.triangles[at_index(t)];
-  const auto corner = [&](std::size_t k) -> Vec3d {
-    return mesh.positions[at_index(triangle[k])].template cast<double>();
-  };
   const Vec3d point = p.template cast<double>();
-  const auto nearest = closest_on_triangle<double>(point, corner(0), corner(1), corner(2));
+  const TrianglePoint<double> nearest = nearest_on(mesh, t, point);
   const Vec3d away = point - nearest.point;
   const double distance = away.norm();
   const Vec3<Real> outward = feature_normal(mesh, t, nearest.feature);
@@ -277,13 +272,7 @@ MeshDistance<Real> distance_to_mesh(const MeshShape<Real>& mesh, const Vec3<Real
   mesh.triangle_tree.nearest(
       reach * reach, [&](const Aabb<Real>& box) { return box.squared_distance(p); },
       [&](Index t, Real bound) {
-        const Triangle& triangle = mesh.triangles[at_index(t)];
-        const auto corner = [&](std::size_t k) -> Vec3d {
-          return mesh.positions[at_index(triangle[k])].template cast<double>();
-        };
-        const double d2 =
-            (point - closest_on_triangle<double>(point, corner(0), corner(1), corner(2)).point)
-                .squaredNorm();
+        const double d2 = (point - nearest_on(mesh, t, point).point).squaredNorm();
         if (d2 > least || (d2 == least && best != kNone && t > best)) return bound;
         best = t;
         least = d2;

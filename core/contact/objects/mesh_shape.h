@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 #include <vector>
@@ -68,6 +69,17 @@ Real rounding_of_segments(Real length, Real other) {
 /// beside it, or a/w R^2 / 2 if the surface goes on turning like that; a corner as it is steep.
 template <class Real>
 MeshShape<Real> prepare_mesh(const TriangleMesh& mesh);
+
+/// Nearest point of triangle `t` alone, computed in the precision of In.
+template <class In, class Real>
+TrianglePoint<In> nearest_on(const MeshShape<Real>& mesh, Index t, const Vec3<In>& p) {
+  assert(at_index(t) < mesh.triangles.size());
+  const Triangle& triangle = mesh.triangles[at_index(t)];
+  const auto corner = [&](std::size_t k) -> Vec3<In> {
+    return mesh.positions[at_index(triangle[k])].template cast<In>();
+  };
+  return closest_on_triangle<In>(p, corner(0), corner(1), corner(2));
+}
 
 /// Nearest point of a mesh with the side that it is seen from.
 template <class Real>

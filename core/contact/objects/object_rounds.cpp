@@ -29,9 +29,10 @@ Real nearest(const std::vector<Real>& numbers, const Feature& corners) {
   return least;
 }
 
-/// Computed without a root: (a + b)^2 <= 2 a^2 + 2 b^2.
+/// Squared distance of a point of a feature from its nearest corner, at most, even when pushed
+/// [m^2]. Computed without a root: (a + b)^2 <= 2 a^2 + 2 b^2.
 template <class Real>
-CornerBound<Real> bound_of(const ObjectRowSource<Real>& source, std::span<const Index> corners) {
+Real span2_of(const ObjectRowSource<Real>& source, std::span<const Index> corners) {
   const Vec3Array<Real>& x = source.state.x;
   const std::size_t count = corners.size();
   const Real part = static_cast<Real>(count == 2 ? kEdgeSpan : kTriangleSpan);
@@ -43,7 +44,15 @@ CornerBound<Real> bound_of(const ObjectRowSource<Real>& source, std::span<const 
   }
   reach += source.cloths.thickness * Real(kRoomForPush);
   const Real both2 = longest2 + 4 * reach * reach;
-  return {part * part * 2 * both2 * static_cast<Real>(kSurely)};
+  return part * part * 2 * both2 * static_cast<Real>(kSurely);
+}
+
+/// Whether corners alone keep off a round object: the cheap form of Corners::clear.
+/// @param least  distance that they keep from its core [m]
+/// @param most   that a point must be from there to be off [m]
+template <class Real>
+bool is_clear(Real span2, Real least, Real most) {
+  return least > 0 && least * least - span2 > most * most;
 }
 
 /// Distance of each active particle from the core of a round object, now and while the rows hold: a
@@ -79,7 +88,7 @@ void add_edges_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& sou
   for (std::size_t n = 0; n < source.near.edges.size(); ++n) {
     const Edge& e = source.cloths.patches.edges[at_index(source.near.edges[n])];
     const Real least = nearest(scratch.least_core, e);
-    if (scratch.edge_bounds[n].clear(least, most)) continue;
+    if (is_clear(scratch.edge_spans2[n], least, most)) continue;
     const Corners<Real> ends = corners_of<Real>(source, scratch.gap, e);
     if (ends.pushed(kEdgeSpan, push).clear(least, rod.radius)) continue;
     if (is_inside(e[0], rod.collider, scratch.inside) ||
@@ -131,7 +140,7 @@ void add_triangles_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>&
   for (std::size_t n = 0; n < source.near.triangles.size(); ++n) {
     const Triangle& t = source.cloths.patches.triangles[at_index(source.near.triangles[n])];
     const Real least = nearest(scratch.least_core, t);
-    if (scratch.triangle_bounds[n].clear(least, most)) continue;
+    if (is_clear(scratch.triangle_spans2[n], least, most)) continue;
     const Corners<Real> corners = corners_of<Real>(source, scratch.gap, t);
     if (corners.pushed(kTriangleSpan, push).clear(least, rod.radius)) continue;
     const auto is_barred = [&](Index i) { return is_inside(i, rod.collider, scratch.inside); };
@@ -156,12 +165,12 @@ void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real
   if (shapes.rounds.empty()) return;
   assert(scratch.inside.size() == source.state.x.size() && "rows of particles come first");
   const ClothPatches& patches = source.cloths.patches;
-  scratch.edge_bounds.clear();
-  scratch.triangle_bounds.clear();
+  scratch.edge_spans2.clear();
+  scratch.triangle_spans2.clear();
   for (const Index k : source.near.edges)
-    scratch.edge_bounds.push_back(bound_of<Real>(source, patches.edges[at_index(k)]));
+    scratch.edge_spans2.push_back(span2_of<Real>(source, patches.edges[at_index(k)]));
   for (const Index k : source.near.triangles)
-    scratch.triangle_bounds.push_back(bound_of<Real>(source, patches.triangles[at_index(k)]));
+    scratch.triangle_spans2.push_back(span2_of<Real>(source, patches.triangles[at_index(k)]));
   for (const RoundObject<Real>& rod : shapes.rounds) {
     measure_cores(source, rod, scratch);
     add_edges_on(rod, source, scratch, rows);

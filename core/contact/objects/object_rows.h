@@ -77,8 +77,10 @@ struct RowScratch {
   std::vector<Real> gap;            ///< of each from all meshes, at least [m]
   std::vector<Index> inside;        ///< of each the collider that it is inside of; see note_inside
   std::vector<std::size_t> cursor;  ///< place in each mesh's particle pairs
-  std::vector<MeshDistance<Real>> nearby;                       ///< triangles near one particle
-  std::vector<CornerBound<Real>> edge_bounds, triangle_bounds;  ///< of the near ones
+  std::vector<MeshDistance<Real>> nearby;  ///< triangles near one particle
+  /// Of the near ones: no point of one is farther from its nearest corner, squared, even when
+  /// pushed; a cheap bound for round objects [m^2].
+  std::vector<Real> edge_spans2, triangle_spans2;
   /// Distance of active particles from the core of a round object, and what they keep of it [m].
   std::vector<Real> core, least_core;
 };

@@ -125,11 +125,7 @@ Real least_clearance(const ObjectShapes<Real>& shapes, const Vec3<Real>& p, Real
     bound = mesh.triangle_tree.nearest(
         bound, [&](const Aabb<Real>& box) { return box.squared_distance(own); },
         [&](Index t, Real best) {
-          const Triangle& triangle = mesh.triangles[at_index(t)];
-          const auto corner = [&](std::size_t k) { return mesh.positions[at_index(triangle[k])]; };
-          const Real distance2 =
-              (own - closest_on_triangle<Real>(own, corner(0), corner(1), corner(2)).point)
-                  .squaredNorm();
+          const Real distance2 = (own - nearest_on(mesh, t, own).point).squaredNorm();
           return std::min(best, distance2 * Real(kBoundSlack));
         });
   }
