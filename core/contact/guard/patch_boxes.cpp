@@ -28,35 +28,20 @@ std::size_t padded(std::size_t count) {
 }  // namespace
 
 template <class Real>
-PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge>& edges,
-                             const std::vector<Triangle>& triangles)
+PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree)
     : fits_(tree.patch_count(), 0), changed_(tree.patch_count()) {
   std::size_t numbers = 0;
   for (std::size_t p = 0; p < tree.patch_count(); ++p) {
     const auto& patch = tree.patch(static_cast<Index>(p));
-    const auto place = [&](Index i) {
-      const auto found = std::lower_bound(patch.particles.begin(), patch.particles.end(), i);
-      return static_cast<std::uint8_t>(found - patch.particles.begin());
-    };
-    Shape shape;
-    for (const Index i : patch.vertices) shape.vertices.push_back({place(i)});
-    for (const Index e : patch.edges) {
-      const Edge& edge = edges[at_index(e)];
-      shape.edges.push_back({place(edge[0]), place(edge[1])});
-    }
-    for (const Index t : patch.triangles) {
-      const Triangle& corners = triangles[at_index(t)];
-      shape.triangles.push_back({place(corners[0]), place(corners[1]), place(corners[2])});
-    }
-    shape.begin = numbers;
-    numbers += kComponents * (padded(shape.edges.size()) + padded(shape.triangles.size()) +
-                              padded(shape.vertices.size()) + 1);
-    shapes_.push_back(std::move(shape));
+    begin_.push_back(numbers);
+    numbers += kComponents * (padded(patch.edges.size()) + padded(patch.triangles.size()) +
+                              padded(patch.vertices.size()) + 1);
   }
   // What pads a column is empty.
   numbers_.assign(numbers, QuadBox<Real>::kFar);
-  for (std::size_t p = 0; p < shapes_.size(); ++p) {
-    const PatchColumns<Real> all = columns(static_cast<Index>(p));
+  for (std::size_t p = 0; p < begin_.size(); ++p) {
+    const auto number = static_cast<Index>(p);
+    const PatchColumns<Real> all = columns(number, tree.patch(number));
     for (const BoxColumns<Real>& kind : {all.edges, all.triangles, all.vertices}) {
       Real* const upper = numbers_.data() + (kind.numbers - numbers_.data()) + 3 * kind.pitch;
       std::fill(upper, upper + 3 * kind.pitch, -QuadBox<Real>::kFar);
@@ -65,19 +50,18 @@ PatchBoxes<Real>::PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge
 }
 
 template <class Real>
-PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
-  const Shape& shape = shapes_[at_index(p)];
-  assert(at_index(p) < fits_.size());
-  const Real* at = numbers_.data() + shape.begin;
+PatchColumns<Real> PatchBoxes<Real>::columns(Index p, const Patch& patch) const {
+  assert(at_index(p) < begin_.size());
+  const Real* at = numbers_.data() + begin_[at_index(p)];
   const auto take = [&](std::size_t count) {
     const BoxColumns<Real> kind{at, count, padded(count)};
     at += kComponents * kind.pitch;
     return kind;
   };
   PatchColumns<Real> all;
-  all.edges = take(shape.edges.size());
-  all.triangles = take(shape.triangles.size());
-  all.vertices = take(shape.vertices.size());
+  all.edges = take(patch.edges.size());
+  all.triangles = take(patch.triangles.size());
+  all.vertices = take(patch.vertices.size());
   all.whole = at;
   return all;
 }
@@ -87,7 +71,7 @@ PatchColumns<Real> PatchBoxes<Real>::columns(Index p) const {
 /// @return a bit for each feature with a changed corner
 template <class Real>
 template <std::size_t CornerCount>
-std::uint32_t PatchBoxes<Real>::fit_features(const Corners<CornerCount>& features,
+std::uint32_t PatchBoxes<Real>::fit_features(const FeatureCorners<CornerCount>& features,
                                              const CornerBoxes& corner, std::uint32_t changed,
                                              std::size_t pitch, Real* numbers) {
   std::uint32_t marks = 0;
@@ -108,10 +92,10 @@ std::uint32_t PatchBoxes<Real>::fit_features(const Corners<CornerCount>& feature
 }
 
 template <class Real>
-void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch,
-                           const PredictedMotion<Real>& motion, const std::vector<char>& changed) {
+void PatchBoxes<Real>::fit(Index p, const Patch& patch, const PredictedMotion<Real>& motion,
+                           const std::vector<char>& changed) {
   const auto number = at_index(p);
-  assert(number < shapes_.size() && patch.particles.size() <= kMostPatchFeatures);
+  assert(number < begin_.size() && patch.particles.size() <= kMostPatchFeatures);
   CornerBoxes corner;
   QuadBox<Real> whole;
   std::uint32_t bits = 0;
@@ -124,7 +108,7 @@ void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch
     whole.add(corner[k]);
     bits |= static_cast<std::uint32_t>(changed[i] != 0) << k;
   }
-  const PatchColumns<Real> all = columns(p);
+  const PatchColumns<Real> all = columns(p, patch);
   const auto numbers = [&](const BoxColumns<Real>& kind) {
     return numbers_.data() + (kind.numbers - numbers_.data());
   };
@@ -133,11 +117,11 @@ void PatchBoxes<Real>::fit(Index p, const typename PatchTree<Real>::Patch& patch
     around[c] = whole.lower[c];
     around[c + 3] = whole.upper[c];
   }
-  const Shape& shape = shapes_[number];
   changed_[number] = {
-      fit_features(shape.vertices, corner, bits, all.vertices.pitch, numbers(all.vertices)),
-      fit_features(shape.edges, corner, bits, all.edges.pitch, numbers(all.edges)),
-      fit_features(shape.triangles, corner, bits, all.triangles.pitch, numbers(all.triangles))};
+      fit_features(patch.vertex_corners, corner, bits, all.vertices.pitch, numbers(all.vertices)),
+      fit_features(patch.edge_corners, corner, bits, all.edges.pitch, numbers(all.edges)),
+      fit_features(patch.triangle_corners, corner, bits, all.triangles.pitch,
+                   numbers(all.triangles))};
 }
 
 template <class Real>

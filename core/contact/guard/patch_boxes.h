@@ -54,9 +54,10 @@ void leave_out_incident(const typename PatchTree<Real>::Patch& p,
 template <class Real>
 class PatchBoxes {
  public:
+  using Patch = typename PatchTree<Real>::Patch;
+
   PatchBoxes() = default;
-  PatchBoxes(const PatchTree<Real>& tree, const std::vector<Edge>& edges,
-             const std::vector<Triangle>& triangles);
+  explicit PatchBoxes(const PatchTree<Real>& tree);
 
   /// Says that the motion in all patches is another one.
   void forget() { fits_.assign(fits_.size(), 0); }
@@ -69,34 +70,24 @@ class PatchBoxes {
   /// Fits the boxes of a patch. Several patches may be fitted at once.
   /// @param patch    its features
   /// @param changed  of each particle one number, not 0 if its motion changed
-  void fit(Index p, const typename PatchTree<Real>::Patch& patch,
-           const PredictedMotion<Real>& motion, const std::vector<char>& changed);
+  void fit(Index p, const Patch& patch, const PredictedMotion<Real>& motion,
+           const std::vector<char>& changed);
 
   /// Which features had a particle with a changed motion when the patch was fitted.
   const PatchMarks& changed(Index p) const { return changed_[at_index(p)]; }
 
-  /// The boxes, which must fit.
-  PatchColumns<Real> columns(Index p) const;
+  /// The boxes of a patch, which must fit.
+  PatchColumns<Real> columns(Index p, const Patch& patch) const;
 
  private:
-  /// Where the particles of features stand in their patch's list.
-  template <std::size_t CornerCount>
-  using Corners = std::vector<std::array<std::uint8_t, CornerCount>>;
-  struct Shape {
-    Corners<1> vertices;
-    Corners<2> edges;
-    Corners<3> triangles;
-    std::size_t begin = 0;  ///< of its numbers
-  };
-
   /// Of the patch that is being fitted, for each of its particles.
   using CornerBoxes = std::array<QuadBox<Real>, kMostPatchFeatures>;
   template <std::size_t CornerCount>
-  static std::uint32_t fit_features(const Corners<CornerCount>& features,
+  static std::uint32_t fit_features(const FeatureCorners<CornerCount>& features,
                                     const CornerBoxes& corners, std::uint32_t changed,
                                     std::size_t pitch, Real* numbers);
 
-  std::vector<Shape> shapes_;
+  std::vector<std::size_t> begin_;  ///< of each patch: its first number
   AlignedVector<Real> numbers_;
   std::vector<char> fits_;
   std::vector<PatchMarks> changed_;

@@ -126,7 +126,7 @@ void test_patches(const SearchPass<Real>& pass, Index p, Index q) {
   const std::vector<char>& resting = left_out.resting;
   if (resting[at_index(p)] && resting[at_index(q)]) return;
   if (in_heap(left_out.tangled, cloths, first) || in_heap(left_out.tangled, cloths, second)) return;
-  overlap_patches(search.boxes.columns(p), search.boxes.columns(q),
+  overlap_patches(search.boxes.columns(p, first), search.boxes.columns(q, second),
                   changed_in(search, p, left_out.all), changed_in(search, q, left_out.all),
                   part.overlaps);
   leave_out_incident<Real>(first, second, part.overlaps);
@@ -151,7 +151,7 @@ template <class Real>
 PatchSearch<Real> patch_search(const ClothModel<Real>& model) {
   PatchSearch<Real> search;
   search.tree = PatchTree<Real>(model);
-  search.boxes = PatchBoxes<Real>(search.tree, model.edges, model.triangles);
+  search.boxes = PatchBoxes<Real>(search.tree);
   search.motion.start.assign(model.mass.size(), {});
   search.motion.end.assign(model.mass.size(), {});
   search.parts.resize(kMostParts);

@@ -16,23 +16,24 @@ namespace {
 /// A patch of a mesh that is no grid has at most so many triangles.
 constexpr std::size_t kPatchTriangles = 8;
 
-/// Marks the features of a patch with each of its particles.
+/// Looks up the corners of a patch's features, and marks the features with each of its particles.
 template <class Patch>
-void mark_features(const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
-                   Patch& patch) {
+void give_corners(const std::vector<Edge>& edges, const std::vector<Triangle>& triangles,
+                  Patch& patch) {
   patch.having.assign(patch.particles.size(), {});
-  const auto marks = [&](Index i) -> PatchMarks& {
-    const auto found = std::lower_bound(patch.particles.begin(), patch.particles.end(), i);
-    return patch.having[static_cast<std::size_t>(found - patch.particles.begin())];
+  const auto add = [&](const auto& particles, std::uint32_t PatchMarks::*kind, auto& corners) {
+    auto& places = corners.emplace_back();
+    for (std::size_t k = 0; k < particles.size(); ++k) {
+      const auto begin = patch.particles.begin(), end = patch.particles.end();
+      places[k] = static_cast<std::uint8_t>(std::lower_bound(begin, end, particles[k]) - begin);
+      patch.having[places[k]].*kind |= 1u << (corners.size() - 1);
+    }
   };
-  for (std::size_t k = 0; k < patch.vertices.size(); ++k)
-    marks(patch.vertices[k]).vertices |= 1u << k;
-  for (std::size_t k = 0; k < patch.edges.size(); ++k) {
-    for (const Index i : edges[at_index(patch.edges[k])]) marks(i).edges |= 1u << k;
-  }
-  for (std::size_t k = 0; k < patch.triangles.size(); ++k) {
-    for (const Index i : triangles[at_index(patch.triangles[k])]) marks(i).triangles |= 1u << k;
-  }
+  for (const Index i : patch.vertices)
+    add(std::array{i}, &PatchMarks::vertices, patch.vertex_corners);
+  for (const Index e : patch.edges) add(edges[at_index(e)], &PatchMarks::edges, patch.edge_corners);
+  for (const Index t : patch.triangles)
+    add(triangles[at_index(t)], &PatchMarks::triangles, patch.triangle_corners);
 }
 
 }  // namespace
@@ -215,7 +216,7 @@ void PatchTree<Real>::give_features(const ClothModel<Real>& model) {
         }
       }
     }
-    mark_features(model.edges, model.triangles, patch);
+    give_corners(model.edges, model.triangles, patch);
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -26,6 +27,10 @@ inline constexpr int kPatchCells = 2;
 struct PatchMarks {
   std::uint32_t vertices = 0, edges = 0, triangles = 0;
 };
+
+/// Where the particles of features of one kind stand in the list of their patch.
+template <std::size_t Count>
+using FeatureCorners = std::vector<std::array<std::uint8_t, Count>>;
 
 /// Hierarchy of axis-aligned boxes over patches of cloths. Its shape is made once, from the mesh;
 /// boxes are refitted. Patches of a grid are rectangles of cells; those of other meshes are halved
@@ -69,6 +74,9 @@ class PatchTree {
     std::vector<Index> vertices, edges, triangles;  ///< that belong to it
     std::vector<Index> particles;                   ///< of its triangles, ascending
     std::vector<PatchMarks> having;                 ///< of each of these, the features that have it
+    FeatureCorners<1> vertex_corners;               ///< of `vertices`
+    FeatureCorners<2> edge_corners;                 ///< of `edges`
+    FeatureCorners<3> triangle_corners;             ///< of `triangles`
   };
   const Patch& patch(Index p) const { return patches_[at_index(p)]; }
   std::size_t patch_count() const { return patches_.size(); }
