@@ -11,6 +11,7 @@
 #include "core/contact/constants.h"
 #include "core/contact/guard/constants.h"
 #include "core/contact/parts.h"
+#include "core/contact/smallest_gap.h"
 
 namespace weft {
 namespace {

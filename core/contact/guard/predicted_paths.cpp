@@ -8,7 +8,6 @@
 
 #include "core/contact/guard/constants.h"
 #include "core/contact/guard/stray_pass.h"
-#include "core/contact/smallest_gap.h"
 #include "core/instantiate.h"
 
 namespace weft {
@@ -141,16 +140,7 @@ bool allows_for_common(const PredictedPaths<Real>& paths, Real reach) {
   return dot(more, more) <= reach * reach / 4;
 }
 
-template <class Real>
-Real smallest_gap_at(const QuadArray<Real>& x) {
-  QuadBox<Real> all;
-  for (const Quad<Real>& p : x) all.add(p);
-  Real largest = 0;
-  for (int k = 0; k < 3; ++k) largest = std::max({largest, -all.lower[k], all.upper[k]});
-  return smallest_gap_for(largest);
-}
-
 WEFT_INSTANTIATE_FUNCTIONS(begin_paths, begin_paths_of_strays, predict, find_strays,
-                           allows_for_common, smallest_gap_at)
+                           allows_for_common)
 
 }  // namespace weft

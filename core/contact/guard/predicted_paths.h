@@ -67,8 +67,4 @@ Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const Awake
 template <class Real>
 bool allows_for_common(const PredictedPaths<Real>& paths, Real reach);
 
-/// Gap that every step must leave between features [m].
-template <class Real>
-Real smallest_gap_at(const QuadArray<Real>& x);
-
 }  // namespace weft

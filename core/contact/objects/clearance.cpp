@@ -15,13 +15,6 @@
 namespace weft {
 namespace {
 
-template <class Real>
-Real largest_coordinate(const Vec3Array<Real>& x) {
-  Real farthest = 0;
-  for (const Vec3<Real>& p : x) farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
-  return farthest;
-}
-
 /// For each particle, how far the points of its edges and triangles may be from it [m].
 template <class Real>
 void measure_spans(const std::vector<Edge>& edges, const Vec3Array<Real>& x,
@@ -53,7 +46,7 @@ void measure_clearance(const ContactCloths<Real>& cloths, const ObjectShapes<Rea
   assert(dt > 0 && state.v.size() == state.x.size());
   const std::size_t n = state.x.size();
   Clearance<Real>& c = clearance;
-  c.smallest_gap = smallest_gap_for(largest_coordinate(state.x));
+  c.smallest_gap = smallest_gap_at(state.x);
   const bool known = c.collected && c.distance.size() == n;
   if (!known) {
     c.distance.assign(n, Real(-1));
