@@ -55,9 +55,10 @@ inline constexpr double kStepsOfRoom = 16;
 /// chain of particles that wait for each other costs a whole measurement.
 inline constexpr int kMostWaves = 48;
 
-/// Speed added to both sides of a pair when they share its gap, as a fraction of the faster one's
-/// [1]. Larger: gaps are shared more equally, and the faster side is anchored more often. Smaller:
-/// the slower side has no room when it begins to move.
+/// Speed added to both sides of a pair when they share its gap, so that the slower side gets a
+/// share too, as a fraction of the faster one's speed [1]. Larger: gaps are shared more equally,
+/// and the faster side is anchored more often. Smaller: the slower side has no room when it begins
+/// to move.
 inline constexpr double kLeastShare = 0.08;
 
 /// Every side gets at least this fraction of a gap, rounding included [1].

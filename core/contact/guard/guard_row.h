@@ -43,7 +43,7 @@ Quad<Real> weighted(const GuardRow<Real>& row, const QuadArray<Real>& values) {
   return sum;
 }
 
-/// What of a vector lies across the row's normal.
+/// Component of a vector tangential to the contact.
 template <class Real>
 Quad<Real> tangential(const GuardRow<Real>& row, const Quad<Real>& v) {
   return v - row.normal * dot(row.normal, v);

@@ -18,9 +18,10 @@ struct GuardCounts {
   double truncated = 0;           ///< part of it that was not allowed [m]
   std::uint64_t collections = 0;  ///< of all pairs
   std::uint64_t renewals = 0;     ///< of the pairs of some particles
-  std::uint64_t anchored = 0, critical = 0;
-  std::uint64_t quiet = 0;  ///< steps that one bound for all particles certified
-  std::uint64_t calm = 0;   ///< steps along calm paths, in which no particle was examined
+  std::uint64_t anchored = 0;     ///< particles
+  std::uint64_t critical = 0;     ///< pairs whose step was certified by itself
+  std::uint64_t quiet = 0;        ///< steps that one bound for all particles certified
+  std::uint64_t calm = 0;         ///< steps along calm paths, in which no particle was examined
 };
 
 /// Where all particles are, certified, and where they want to go in the coming drift.

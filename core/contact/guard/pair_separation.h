@@ -17,7 +17,7 @@ namespace weft {
 inline constexpr std::size_t kPairPadding = 8;
 
 /// Many pairs of one kind, and how their sides lie apart: one column a number, with room for whole
-/// vectors; what lies beyond `count` is of no matter. As in PairSeparation, but along the line of
+/// vectors; entries beyond `count` are unspecified. As in PairSeparation, but along the line of
 /// closest points alone: where that gap is not above kCloseGap, `separate_pair` may know better.
 template <class Real>
 struct PairColumns {

@@ -86,8 +86,8 @@ class PatchTree {
   /// The patches that have one, each once.
   const std::vector<Index>& marked() const { return marked_; }
 
-  /// Like `for_each_near_pair`, but only for pairs with a marked patch. What goes on as before is
-  /// no matter of the others: two features that were apart on their paths stay so.
+  /// Like `for_each_near_pair`, but only for pairs with a marked patch. Other pairs need no visit:
+  /// features that were apart on their paths stay apart while these go on.
   template <class Visit>
   void for_each_changed_pair(Visit&& visit) const {
     if (!nodes_.empty()) visit_inside<true>(0, visit);

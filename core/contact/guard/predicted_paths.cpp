@@ -13,8 +13,8 @@
 namespace weft {
 namespace {
 
-/// What of a velocity is not jitter: the smaller of it and of the mean velocity since the path
-/// began, by components, and nothing where they disagree.
+/// Steady part of a velocity, without jitter: per component, the smaller of it and of the mean
+/// velocity since the path began, or 0 where their signs differ.
 template <class Real>
 Quad<Real> steady(const PredictedPaths<Real>& paths, const QuadArray<Real>& x, const Quad<Real>& v,
                   std::size_t particle, Real dt) {

@@ -61,9 +61,9 @@ template <class Real>
 Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const AwakeParticles& awake,
                  GuardedStep<Real>& step, PredictedPaths<Real>& paths);
 
-/// Whether new paths of strays allow for the displacement from the paths that is common to all: a
-/// path begins with that of the step before, and has only half its reach for what it is more by
-/// now.
+/// Whether new paths of strays allow for the displacement from the paths that is common to all. A
+/// path begins with the common displacement of the step before, and leaves half of its reach for
+/// the increase since then.
 template <class Real>
 bool allows_for_common(const PredictedPaths<Real>& paths, Real reach);
 

@@ -41,9 +41,9 @@ void share_gap(const GuardedPair<Real>& pair, const GuardedStep<Real>& step, Reg
   }
 }
 
-/// Lists the pairs of a particle with the radii that others have in them, and for measuring those
-/// whose bound may not be enough for a particle that is being anchored: the first of these in the
-/// pair asks for all.
+/// Lists the pairs of a particle with the radii that others have in them. Pairs whose bound may be
+/// too small for a particle that is being anchored are listed for measuring. Of a pair's particles
+/// in the wave, only the first asks for the measurement.
 template <class Real>
 void list_claims(Index particle, const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                  const Regions<Real>& regions, AnchorPart<Real>& part) {

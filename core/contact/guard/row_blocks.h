@@ -23,17 +23,17 @@ inline constexpr double kStickTime = 0.02, kFastestReturn = 1e-3, kMostSlip = 0.
 /// for ever, and the push drives the springs that bring it back.
 inline constexpr double kPushSlack = 0.1;
 
-/// Pressure takes thickness from layers, in proportion: as much as laboratories press fabrics with
-/// (KES), which takes a third to a half of theirs, would take all of it [Pa], but for a part. What
-/// is pressed so is not pushed: the push would stretch it, and lift what presses, with energy that
-/// came from nowhere.
+/// Layers lose thickness in proportion to pressure. All of it would go at kFlattening, the pressure
+/// at which the KES test measures a loss of a third to a half [Pa]; but no more than the part
+/// kMostFlattening goes [1]. The lost thickness is not pushed back: the push would stretch the
+/// layers and lift what presses them, with energy from nowhere.
 inline constexpr double kFlattening = 5e3, kMostFlattening = 0.75;
 
 /// Harder pressed than this, as only between objects, layers let go of so much of what they press
 /// each other with in a step, at twice the pressure [Pa].
 inline constexpr double kCrushing = 2e4, kLeak = 0.1;
 
-/// Rows that have no particle in common; behind them kNone.
+/// Rows without a common particle, padded with kNone.
 inline constexpr std::size_t kBatchRows = 8;
 using RowBatch = std::array<Index, kBatchRows>;
 

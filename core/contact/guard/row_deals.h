@@ -67,7 +67,7 @@ class RowDeals {
   std::array<std::vector<RowBlock<Real>>, kDeals> blocks_;
   std::array<std::vector<RowBatch>, kDeals> batches_;  ///< before they are blocks
   std::array<std::vector<Index>, kDeals> open_;  ///< from each batch on, the next that has room
-  /// What lists had changed when they were dealt, each once at least.
+  /// Change counter of each list when it was last dealt.
   std::array<std::uint64_t, RowSlabs<Real>::kLists> changes_{};
   /// The first batch that each particle may be in, counted through all deals of all times.
   std::vector<std::uint32_t> next_batch_;

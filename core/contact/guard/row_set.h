@@ -32,7 +32,8 @@ struct RowSet {
 template <class Real>
 RowSet<Real> row_set(std::size_t particles);
 
-/// Forgets all rows. Their particles stay listed until rows are made anew.
+/// Forgets all rows. `first` and the particle lists stay until rows are made anew; has_row must not
+/// be called before.
 template <class Real>
 void forget_rows(RowSet<Real>& rows);
 

@@ -14,9 +14,9 @@
 
 namespace weft {
 
-/// Calls work(k) for k from 0 on below Parts, of which every second one has nothing in common with
-/// another such: these at the same time, those between at the same time, and the last alone.
-/// @param upwards  in this order, or the other way
+/// Two-colour schedule: runs work(k) for all even k below Parts - 1 in parallel, then for all odd
+/// ones, then for the last alone. Parts of one colour share no particle.
+/// @param upwards  in this order, or in reverse
 template <std::size_t Parts, class Work>
 void for_every_second(Executor* executor, bool upwards, Work&& work) {
   const auto from = [&](std::size_t first) {

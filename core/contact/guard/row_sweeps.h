@@ -40,8 +40,8 @@ template <class Real>
 void find_busy_rows(const QuadArray<Real>& x, const QuadArray<Real>& v, Real dt, RowSet<Real>& rows,
                     Executor* executor);
 
-/// Measures the pressure about each particle of a row, from what pushes it: single rows share a
-/// load by chance. Layers are pressed from both sides.
+/// Measures the pressure about each particle of a row, summed over all rows at it, because how a
+/// load divides among single rows is arbitrary. Layers are pressed from both sides.
 /// @param inverse_area  of the fabric that belongs to each particle [1/m^2]
 /// @param kicked        time of the forces that the impulses stand against [s]
 template <class Real>

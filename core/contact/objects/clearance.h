@@ -24,10 +24,10 @@ struct Clearance {
   Real smallest_gap = 0;        ///< left between cloth and objects after every step [m]
   std::vector<char> resting;    ///< 1 for each particle of a cloth that sleeps; empty if none does
   Vec3Array<Real> x;            ///< positions then [m]
-  std::vector<Real> distance;   ///< of each from all objects, at least [m]
+  std::vector<Real> distance;   ///< lower bound of each one's distance from all objects [m]
   std::vector<Real> skin;       ///< how far each may move before pairs are collected again [m]
   std::vector<Real> span;       ///< how far its features' points may be from it [m]
-  std::vector<char> near;  ///< it, or a point of an edge or triangle at it, may touch something
+  std::vector<char> near;       ///< whether each, or its edges and triangles, may touch an object
   std::vector<char> has_pairs;  ///< of each, with triangles of meshes
 };
 

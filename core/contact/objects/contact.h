@@ -145,8 +145,8 @@ class Contact {
   RowResponse<Real> response_;
   Bounces<Real> bounces_;
   MoverStops<Real> stops_;
-  bool resolved_ =
-      false;  ///< `resolve` was called for the coming drift, and `move_objects` not yet
+  /// `resolve` was called for the coming drift, and `move_objects` not yet.
+  bool resolved_ = false;
 
   ContactLog log_;
 };

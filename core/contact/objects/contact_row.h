@@ -29,9 +29,9 @@ struct ContactCandidate {
   Real distance = 0;  ///< when collected [m]
 };
 
-/// One contact of up to three particles with a fixed plane: gap = sum w n.x - offset. The plane
-/// separates the cloth's feature from the (convex) feature of the object, so a particle that
-/// stays on its side has not crossed.
+/// One contact of up to three particles with a plane, which goes with its object (MovingRow): gap =
+/// sum w n.x - offset. The plane separates the cloth's feature from the (convex) feature of the
+/// object, so a particle that stays on its side has not crossed.
 template <class Real>
 struct ContactRow {
   std::array<Index, 3> particle = {0, 0, 0};
@@ -73,7 +73,7 @@ void share_out(const ContactRow<Real>& row, const Vec3<Real>& change, Vec3Array<
     values[at_index(row.particle[k])] += change * row.share[k];
 }
 
-/// How far the particles of a row may go without its mattering.
+/// How far the particles of a row may move before the row matters.
 template <class Real>
 struct RowRoom {
   std::array<Index, 3> particle;

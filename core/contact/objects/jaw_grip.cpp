@@ -12,9 +12,9 @@ namespace weft {
 namespace {
 
 /// Finds the rows that a jaw squeezes, and sets the grip of each to its weight in the shares.
-/// Particles alone carry the squeeze, where there are some, by their mass and so by area: edges and
-/// triangles are more where jaws end, and would turn the cloth between them. A few particles would
-/// not hold it against turning; there all rows have equal shares.
+/// Particles alone carry the squeeze, where there are some, by their mass and so by area: rows of
+/// edges and triangles are denser at the rims of jaws, and would turn the cloth between them. A few
+/// particles would not hold it against turning; there all rows have equal shares.
 /// @param k  number of the jaw's collider
 /// @return the sum of these weights
 template <class Real>

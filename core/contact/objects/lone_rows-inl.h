@@ -48,7 +48,7 @@ HWY_INLINE hn::Mask<D> busy(D d, const LoneBlock<Real>& rows, const LonePass<Rea
   return hn::Not(hn::Lt(hn::LoadU(d, pass.travel2 + i), hn::LoadU(d, rows.touch2 + k)));
 }
 
-/// What a response does to velocities: see Contact::sweep_rows.
+/// What a response does to velocities: see sweep_rows in row_response.h.
 /// @param push  that each row lacks of its normal velocity [m/s]; vn  which it has [m/s]
 template <class V, class M>
 HWY_INLINE Triple<V> velocity_change(const Triple<V>& n, const Triple<V>& v, V vn, V push,
@@ -149,7 +149,8 @@ HWY_ATTR LoneResponse<Real> sweep(std::span<LoneBlock<Real>> blocks, const LoneP
   return result;
 }
 
-/// @return their number if there is none
+/// @return number of the first block, not before `from`, with a particle that may cross its plane;
+/// blocks.size() if there is none
 template <class Real>
 HWY_ATTR std::size_t next_crossing(std::span<const LoneBlock<Real>> blocks, const Real* travel2,
                                    std::size_t from) {

@@ -103,8 +103,8 @@ LoneResponse<Real> LoneRows<Real>::sweep(const LonePass<Real>& pass) {
   return WEFT_RUN(sweep, Real)(blocks_, pass);
 }
 
-/// The first block from number `block` on with a particle that could; their number if there is
-/// none.
+/// The first block, not before number `block`, with a particle that could cross its plane; the
+/// number of blocks if there is none.
 template <class Real>
 std::size_t LoneRows<Real>::next_crossing(const Real* travel2, std::size_t block) const {
   return WEFT_RUN(next_crossing, Real)(blocks_, travel2, block);

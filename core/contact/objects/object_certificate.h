@@ -43,7 +43,8 @@ bool rows_hold(const ClothState<Real>& state, Real dt, const ObjectMotion<Real>&
                const ObjectRows<Real>& rows, Executor* executor, RowReach<Real>& reach);
 
 /// Certifies the coming drift: no particle crosses a plane or goes beyond the reach.
-/// @param others  have changed velocities since all displacements were measured, and not by rows
+/// @param others  whether anything but rows has changed velocities since all displacements were
+///                measured
 template <class Real>
 void certify(ObjectCertificate<Real>& c, bool others);
 

@@ -29,7 +29,8 @@ void for_each_near(const FoundFeatures<Real>& found, const FeatureBlocks<Real>& 
   for (Index n = f == 0 ? 0 : found.ends[f - 1]; n < found.ends[f]; ++n) {
     const auto k = at_index(n);
     const Index feature = mesh.feature[at_index(found.hits[k])];
-    // The reach of cloth that flies apart includes what stands for no feature, however far.
+    // Empty lanes lie 1e9 m away; the reach of cloth that flies apart may include them all the
+    // same.
     if (feature != kNone) visit(feature, std::sqrt(found.hits2[k]));
   }
 }

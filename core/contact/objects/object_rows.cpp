@@ -26,7 +26,7 @@ bool shares_nearest(const MeshShape<Real>& mesh, const MeshDistance<Real>& d, In
   return d.feature <= 3 ? has(d.feature - 1) : has(d.feature - 4) && has(d.feature - 3);
 }
 
-/// Makes the row about to be added go with its object.
+/// Ties the row that is about to be added to its moving object.
 /// @param mobility  of the row's point [1/kg]
 template <class Real>
 void follow(const ContactRow<Real>& row, double top, const ColliderFrame<Real>& frame,

@@ -40,7 +40,8 @@ struct ObjectShapes {
   std::vector<std::shared_ptr<const MeshShape<Real>>> meshes;  ///< shared by copies of a world
   std::vector<std::size_t> mesh_collider;                      ///< the collider of each mesh
   std::vector<ColliderFrame<Real>> frames;                     ///< of each collider
-  /// Beyond the size of a mesh's triangle the pairs grow with the square of a particle's skin [m].
+  /// Longest skin of a particle that is not fast: the smallest triangle size of all meshes. With
+  /// longer skins the number of pairs grows with their square [m].
   Real widest_skin = std::numeric_limits<Real>::infinity();
 
   bool empty() const { return planes.empty() && rounds.empty() && meshes.empty(); }
