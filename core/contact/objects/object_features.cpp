@@ -160,8 +160,8 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
             {static_cast<Real>(s.weight[0]), static_cast<Real>(s.weight[1]), 0}, barrier, collider,
             responds, rows);
   };
-  for_pairs_that_may_meet(source, scratch, source.cloths.patches.edges, source.pairs.edge[m],
-                          mesh.edge_rises, kEdgeSpan, collider, add);
+  for_pairs_that_may_meet(source, scratch, source.cloths.patches.edges,
+                          source.pairs.of_mesh[m].edges, mesh.edge_rises, kEdgeSpan, collider, add);
   return tests;
 }
 
@@ -197,8 +197,8 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
     add_row(source, {t[0], t[1], t[2]}, weights, barrier, collider, responds, rows);
   };
   for_pairs_that_may_meet(source, scratch, source.cloths.patches.triangles,
-                          source.pairs.triangle[m], mesh.vertex_rises, kTriangleSpan, collider,
-                          add);
+                          source.pairs.of_mesh[m].triangles, mesh.vertex_rises, kTriangleSpan,
+                          collider, add);
   return tests;
 }
 

@@ -114,7 +114,7 @@ void pair_particles(const PairPass<Real>& pass, const Neighbourhood<Real>& about
                     PairRoom<Real>& room, FoundPairs<Real>& found) {
   const auto& [cloths, mesh, near, x, c, free, fresh] = pass;
   const PairFeatures<Real>& particles = room.particles;
-  std::vector<ContactCandidate<Real>>& pairs = found.particle_pairs;
+  std::vector<ContactCandidate<Real>>& pairs = found.pairs.particles;
   find_near<Real>(particles, mesh.triangle_blocks, about.triangles, about.box, cloths.thickness,
                   measure_points_from_triangles, room.near, found.tests, free.particle);
   for (std::size_t f = 0; f < particles.number.size(); ++f) {
@@ -164,27 +164,26 @@ void pair_patch(const PairPass<Real>& pass, const NearPatch& patch, Neighbourhoo
   const Real thickness = pass.cloths.thickness;
   pair_particles(pass, about, room, found);
   pair_all<Real>(room.edges, pass.mesh.ridge_blocks, about.ridges, about.box, thickness,
-                 measure_segments, room.near, found.tests, found.edge_pairs, pass.free.edge);
+                 measure_segments, room.near, found.tests, found.pairs.edges, pass.free.edge);
   pair_all<Real>(room.triangles, pass.mesh.corner_blocks, about.corners, about.box, thickness,
-                 measure_triangles_from_points, room.near, found.tests, found.triangle_pairs,
+                 measure_triangles_from_points, room.near, found.tests, found.pairs.triangles,
                  pass.free.triangle);
 }
 
 /// Joins what the parts have found for a mesh, in their order.
 template <class Real>
 void join_found(std::size_t mesh, ObjectPairs<Real>& pairs, Profile& profile) {
-  using Found = FoundPairs<Real>;
-  const auto join = [&](std::vector<ContactCandidate<Real>> Found::*list,
-                        std::vector<ContactCandidate<Real>>& into) {
-    into.clear();
-    for (const Found& found : pairs.found)
-      into.insert(into.end(), (found.*list).begin(), (found.*list).end());
-    profile[Stage::broad_phase].work += into.size();
-  };
-  join(&Found::particle_pairs, pairs.particle[mesh]);
-  join(&Found::edge_pairs, pairs.edge[mesh]);
-  join(&Found::triangle_pairs, pairs.triangle[mesh]);
-  for (const Found& found : pairs.found) profile[Stage::narrow_phase].work += found.tests;
+  for (std::size_t kind = 0; kind < 3; ++kind) {
+    std::vector<ContactCandidate<Real>>& all = *pairs.of_mesh[mesh].kinds()[kind];
+    all.clear();
+    for (FoundPairs<Real>& found : pairs.found) {
+      const std::vector<ContactCandidate<Real>>& part = *found.pairs.kinds()[kind];
+      all.insert(all.end(), part.begin(), part.end());
+    }
+    profile[Stage::broad_phase].work += all.size();
+  }
+  for (const FoundPairs<Real>& found : pairs.found)
+    profile[Stage::narrow_phase].work += found.tests;
 }
 
 /// Lets particles go farther than was asked for, as far as is known now: until one of their
@@ -219,9 +218,7 @@ void extend_skins(const ContactCloths<Real>& cloths, const NearFeatures<Real>& n
 template <class Real>
 ObjectPairs<Real> object_pairs(std::size_t meshes, std::size_t patches) {
   ObjectPairs<Real> pairs;
-  pairs.particle.resize(meshes);
-  pairs.edge.resize(meshes);
-  pairs.triangle.resize(meshes);
+  pairs.of_mesh.resize(meshes);
   pairs.found.resize(kContactParts);
   pairs.rooms.resize(kContactParts);
   pairs.neighbourhoods.assign(meshes, std::vector<Neighbourhood<Real>>(patches));
@@ -239,7 +236,7 @@ template <class Real>
 void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& shapes,
                    const NearFeatures<Real>& near, const Vec3Array<Real>& x, Executor* executor,
                    Clearance<Real>& clearance, ObjectPairs<Real>& pairs, Profile& profile) {
-  assert(pairs.particle.size() == shapes.meshes.size());
+  assert(pairs.of_mesh.size() == shapes.meshes.size());
   const Real thickness = cloths.thickness;
   std::vector<Real>& fresh = pairs.fresh;
   fresh.resize(x.size());
@@ -260,8 +257,7 @@ void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& 
               [&](std::size_t c, std::size_t first, std::size_t last) {
                 FoundPairs<Real>& found = pairs.found[c];
                 PairRoom<Real>& room = pairs.rooms[executor ? c : 0];
-                for (auto* list : {&found.particle_pairs, &found.edge_pairs, &found.triangle_pairs})
-                  list->clear();
+                for (auto* list : found.pairs.kinds()) list->clear();
                 found.tests = 0;
                 for (std::size_t n = first; n < last; ++n) {
                   stop_point();
@@ -291,12 +287,12 @@ void mark_paired(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sh
     const auto p = at_index(i);
     if (clearance.distance[p] <= cloths.thickness + clearance.skin[p]) mark(i);
   }
-  for (std::size_t m = 0; m < shapes.meshes.size(); ++m) {
-    for (const auto& pair : pairs.particle[m]) mark(pair.cloth);
-    for (const auto& pair : pairs.edge[m]) {
+  for (const MeshCandidates<Real>& of_mesh : pairs.of_mesh) {
+    for (const auto& pair : of_mesh.particles) mark(pair.cloth);
+    for (const auto& pair : of_mesh.edges) {
       for (const Index i : patches.edges[at_index(pair.cloth)]) mark(i);
     }
-    for (const auto& pair : pairs.triangle[m]) {
+    for (const auto& pair : of_mesh.triangles) {
       for (const Index i : patches.triangles[at_index(pair.cloth)]) mark(i);
     }
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/contact/objects/clearance.h"
@@ -29,18 +31,25 @@ struct PairRoom {
   FoundFeatures<Real> near;
 };
 
+/// Pairs of the cloths' particles, edges and triangles with a mesh.
+template <class Real>
+struct MeshCandidates {
+  std::vector<ContactCandidate<Real>> particles, edges, triangles;
+
+  auto kinds() { return std::array{&particles, &edges, &triangles}; }
+};
+
 /// What a part of the collection finds.
 template <class Real>
 struct FoundPairs {
-  std::vector<ContactCandidate<Real>> particle_pairs, edge_pairs, triangle_pairs;
+  MeshCandidates<Real> pairs;
   std::uint64_t tests = 0;
 };
 
 /// Candidate pairs of each mesh.
 template <class Real>
 struct ObjectPairs {
-  using Pairs = std::vector<ContactCandidate<Real>>;
-  std::vector<Pairs> particle, edge, triangle;
+  std::vector<MeshCandidates<Real>> of_mesh;
   std::vector<std::vector<Neighbourhood<Real>>> neighbourhoods;  ///< of each mesh and patch
   std::vector<FoundPairs<Real>> found;                           ///< by each part
   std::vector<PairRoom<Real>> rooms;  ///< of each part; all use the first one where none waits

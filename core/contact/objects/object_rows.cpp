@@ -57,7 +57,7 @@ std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Inde
   const Real moved = scratch.moved[p] + source.shapes.mesh_frame(m).travel_since_pairs;
   // A particle that is inside looks for the way out, however far it is.
   const bool outside = source.clearance.distance[p] >= 0;
-  const auto& pairs = source.pairs.particle[m];  // in the order of the active particles
+  const auto& pairs = source.pairs.of_mesh[m].particles;  // in the order of the active particles
   std::vector<MeshDistance<Real>>& nearby = scratch.nearby;
   std::size_t& cursor = scratch.cursor[m];
   std::size_t nearest = 0;

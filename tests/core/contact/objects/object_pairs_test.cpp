@@ -46,9 +46,9 @@ TEST_CASE("cloth that flies apart is paired with features that there are, howeve
     mark_near(cloths, clearance, near);
     take_to_own(shapes, p.state.x, near);
     collect_pairs(cloths, shapes, near, p.state.x, nullptr, clearance, pairs, p.profile);
-    CHECK((speed == 0 || pairs.particle[0].size() >= mesh.triangles.size()));
-    check_pairs(pairs.particle[0], p.state.x.size(), mesh.triangles.size());
-    check_pairs(pairs.edge[0], p.edges.size(), mesh.edges.size());
-    check_pairs(pairs.triangle[0], p.triangles.size(), mesh.positions.size());
+    CHECK((speed == 0 || pairs.of_mesh[0].particles.size() >= mesh.triangles.size()));
+    check_pairs(pairs.of_mesh[0].particles, p.state.x.size(), mesh.triangles.size());
+    check_pairs(pairs.of_mesh[0].edges, p.edges.size(), mesh.edges.size());
+    check_pairs(pairs.of_mesh[0].triangles, p.triangles.size(), mesh.positions.size());
   }
 }
