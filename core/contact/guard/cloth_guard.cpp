@@ -222,7 +222,7 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
   const bool unseen = std::exchange(tangled_.unseen, false);
   if (unseen || open_pairs() > 0)
     find_tangles(search_.tree, cloths_, awake_.resting, step_.from, state.inverse_mass, tangled_);
-  drop_all_pairs(pairs_);
+  pairs_.drop_all();
   find_near_patches(search_);
   test_near_patches(search_, cloths_, {awake_.resting, tangled_, true}, executor_, pairs_, profile);
   open_touching(0, unseen, step_.from, regions_.smallest_gap, pairs_);
@@ -230,7 +230,7 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
     note_touches(pairs_, step_.from, tangled_);
     paths_.horizon = std::min(paths_.horizon, std::max(static_cast<Real>(kLookAgain), dt));
   }
-  list_all_pairs(step_.from.size(), pairs_);
+  pairs_.list_all(step_.from.size());
   anchor_anew(pairs_, step_, regions_);
   share_all_gaps(pairs_, step_, regions_);
   paths_.elapsed = dt;
@@ -248,15 +248,15 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
   begin_paths_of_strays(step_, dt, cloths_.reach, paths_);
   predict(paths_.elapsed - dt, paths_, search_.motion);
   find_near_patches_of(paths_.strays, search_);
-  drop_pairs_of(paths_.strays, search_.changed, pairs_);
+  pairs_.drop_of(paths_.strays, search_.changed);
   const std::size_t kept = pairs_.all.size();
   test_near_patches(search_, cloths_, {awake_.resting, tangled_, false}, executor_, pairs_,
                     profile);
   open_touching(kept, false, step_.from, regions_.smallest_gap, pairs_);
   place_new_particles(pairs_, kept, step_.from, making_);
   admit_pairs(kept, step_, executor_, pairs_, regions_);
-  list_pairs_from(kept, pairs_);
-  note_arrivals(kept, pairs_);
+  pairs_.list_from(kept);
+  pairs_.note_arrivals(kept);
   slack_.left = 0;
 }
 

@@ -89,6 +89,21 @@ struct GuardedPairs {
   Index number_of(const GuardedPair<Real>& pair) const {
     return static_cast<Index>(&pair - all.data());
   }
+
+  /// Drops all pairs, and notes the keys of those that were open.
+  void drop_all();
+  /// Lists all pairs with their particles.
+  /// @param particles  number of all
+  void list_all(std::size_t particles);
+  /// Lists pairs that came later with their particles.
+  /// @param first  number of the first of them
+  void list_from(std::size_t first);
+  /// Drops the pairs of particles that get new paths, and notes their keys.
+  /// @param changed  of each particle one number, not 0 for those in the list
+  void drop_of(const std::vector<Index>& particles, const std::vector<char>& changed);
+  /// Notes as arrived those that were not there before the last drop: the rows of the others hold.
+  /// @param first  number of the first that was found since
+  void note_arrivals(std::size_t first);
 };
 
 /// Pairs of a particle that are fetched ahead of the one that is visited: they lie anywhere in
@@ -122,29 +137,7 @@ void for_pairs_from(Pairs& pairs, std::size_t first, Visit&& visit) {
   }
 }
 
-/// Drops all pairs, and notes the keys of those that were open.
-template <class Real>
-void drop_all_pairs(GuardedPairs<Real>& pairs);
-
-/// Lists all pairs with their particles.
-/// @param particles  number of all
-template <class Real>
-void list_all_pairs(std::size_t particles, GuardedPairs<Real>& pairs);
-
-/// Lists pairs that came later with their particles.
-/// @param first  number of the first of them
-template <class Real>
-void list_pairs_from(std::size_t first, GuardedPairs<Real>& pairs);
-
-/// Drops the pairs of particles that get new paths, and notes their keys.
-/// @param changed  of each particle one number, not 0 for those in the list
-template <class Real>
-void drop_pairs_of(const std::vector<Index>& particles, const std::vector<char>& changed,
-                   GuardedPairs<Real>& pairs);
-
-/// Notes as arrived those that were not there before the last drop: the rows of the others hold.
-/// @param first  number of the first that was found since
-template <class Real>
-void note_arrivals(std::size_t first, GuardedPairs<Real>& pairs);
+extern template struct GuardedPairs<float>;
+extern template struct GuardedPairs<double>;
 
 }  // namespace weft
