@@ -4,7 +4,7 @@
 
 A room is a folder of core, or another folder at the top. Functions and classes are those that
 universal-ctags finds; a function is as long as the lines from its name to its closing brace.
-Comments are the lines that hold one. Upward includes are those that the floors of core and
+Code are the lines that hold more than a comment, an assert or nothing. Comments are those that hold one. Upward includes are those that the floors of core and
 server forbid (layers.py).
 """
 
@@ -22,7 +22,7 @@ REBUILT = ("core/contact/guard", "core/contact/objects")
 TOPS = ("core", "proto", "server")
 COMMENT = re.compile(r"(^|[ \t])//")
 ASSERT = re.compile(r"\bassert\(")
-COLUMNS = ("room", "files", "lines", "comments", "functions", "median", "p90", "longest", "asserts",
+COLUMNS = ("room", "files", "lines", "code", "comments", "functions", "median", "p90", "longest", "asserts",
            "per 1000", "largest class", "members", "upward")
 
 
@@ -56,6 +56,17 @@ def tags_of(root, names):
     return [json.loads(line) for line in found.splitlines()]
 
 
+def code_lines(lines):
+    """The number of lines that are neither blank, nor a comment, nor of an assert."""
+    count = depth = 0
+    for line in map(str.strip, lines):
+        if depth > 0 or line.startswith("assert("):
+            depth += line.count("(") - line.count(")")
+        elif line and not line.startswith("//"):
+            count += 1
+    return count
+
+
 def share(values, part):
     """The value below which so large a part of them lies."""
     return sorted(values)[min(len(values) - 1, int(part * len(values)))] if values else 0
@@ -70,7 +81,7 @@ def table(root):
                      for quote, header in layers.INCLUDE.findall(text)
                      if quote == '"' and header.startswith(name.parts[0] + "/"))
         for room in rooms_of(name):
-            counts[room].update(files=1, lines=len(lines), upward=upward,
+            counts[room].update(files=1, lines=len(lines), code=code_lines(lines), upward=upward,
                                 comments=sum(bool(COMMENT.search(line)) for line in lines),
                                 asserts=len(ASSERT.findall(text)))
     for tag in tags_of(root, files):
@@ -82,7 +93,7 @@ def table(root):
     for room in sorted(counts):
         count, lines = counts[room], counts[room]["lines"]
         biggest, most = members[room].most_common(1)[0] if members[room] else ("", 0)
-        yield (room, count["files"], lines, f"{100 * count['comments'] / lines:.1f} %", len(lengths[room]),
+        yield (room, count["files"], lines, count["code"], f"{100 * count['comments'] / lines:.1f} %", len(lengths[room]),
                share(lengths[room], 0.5), share(lengths[room], 0.9), max(lengths[room], default=0),
                count["asserts"], f"{1000 * count['asserts'] / lines:.1f}", biggest.split("::")[-1], most,
                count["upward"])
@@ -93,7 +104,7 @@ def main():
     rows = [COLUMNS, *table(root)]
     widths = [max(len(str(row[k])) for row in rows) for k in range(len(COLUMNS))]
     for row in rows:
-        print("  ".join(str(cell).ljust(width) if k in (0, 10) else str(cell).rjust(width)
+        print("  ".join(str(cell).ljust(width) if k in (0, 11) else str(cell).rjust(width)
                         for k, (cell, width) in enumerate(zip(row, widths))).rstrip())
 
 

@@ -48,9 +48,9 @@ class House(unittest.TestCase):
         row = self.rows[room]
         self.assertEqual({key: row[key.replace("_", " ")] for key in expected}, expected)
 
-    def test_files_lines_comments_and_asserts_are_counted(self):
-        self.check("core/math", files=1, lines=10, comments="20.0 %", asserts=1, per_1000="100.0")
-        self.check("core", files=3, lines=20, comments="10.0 %", asserts=1)
+    def test_files_lines_code_comments_and_asserts_are_counted(self):
+        self.check("core/math", files=1, lines=10, code=8, comments="20.0 %", asserts=1, per_1000="100.0")
+        self.check("core", files=3, lines=20, code=17, comments="10.0 %", asserts=1)
         self.check("server", files=1, lines=1)
 
     def test_functions_are_as_long_as_their_lines(self):
