@@ -165,6 +165,34 @@ TEST_CASE("what cloth wanted in a step in which it is made to stand still counts
   CHECK(guard.counts().truncated == Approx(wanted));
 }
 
+TEST_CASE("a contact that has no objects lets the guard respond as it does alone") {
+  World<float> world(upright_drop(14, 0.25));
+  jolt(world, 0.3, 3);
+  for (int tick = 0; tick < 40; ++tick) world.step();
+  constexpr float kStep = 1e-4F;
+  const auto velocities_after = [&](auto&& respond) {
+    ClothState<float> state = world.state();
+    ClothGuard<float> guard(world.model());
+    Profile profile;
+    for (int step = 0; step < 4; ++step) {
+      guard.solve(state, kStep, profile);
+      respond(state, profile, guard);
+      guard.certify(state, kStep, profile);
+      for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * kStep;
+      guard.finish(state);
+    }
+    return state.v;
+  };
+  Contact<float> none;
+  const auto with_contact = velocities_after([&](auto& state, auto& profile, auto& guard) {
+    none.resolve(state, kStep, profile, &guard);
+  });
+  const auto alone =
+      velocities_after([](auto& state, auto&, auto& guard) { guard.respond_alone(state, kStep); });
+  CHECK(with_contact == alone);
+  CHECK(velocities_after([](auto&...) {}) != alone);
+}
+
 TEST_CASE("the same sheet without the guard crosses itself") {
   WorldDef def = upright_drop(20, 0.25);
   def.contact.seed.self = SelfContact::none;
