@@ -37,14 +37,14 @@ inline constexpr double kSweepsOfNewton = 60;
 /// less of its motion, in longer ticks. Smaller: it loses more.
 inline constexpr long kHandSubstepFactor = 2, kEnoughHandSubsteps = 40;
 
-/// How many more times the substeps of verlet a fabric that locks takes without damping [1].
-/// Larger: longer ticks. Smaller: it gains energy; with 0 it tears itself apart in seconds, with 3
-/// it gains a hundredth in 10 s.
-inline constexpr double kUndampedLocks = 3;
+/// How many more times the substeps are taken by verlet without damping, of a fabric that locks or
+/// is stretched so far that its bound grows [1]. Larger: longer ticks. Smaller: it gains energy;
+/// with 0 it tears itself apart in seconds, with 3 it gains a hundredth in 10 s.
+inline constexpr double kUndampedMargin = 3;
 
-/// Damping ratio of the highest mode from which on it takes none more [1]. Larger: longer ticks.
+/// Damping ratio of the highest mode from which on none more are taken [1]. Larger: longer ticks.
 /// Smaller: gains of energy that the damping does not outweigh.
-inline constexpr double kDampsLocks = 0.01;
+inline constexpr double kDampsEnough = 0.01;
 
 /// With the implicit solver, verlet steps the ticks that are violent, in which anything touches or
 /// could touch (see advance_implicit) or in which a pin moves, if its substeps are at least this

@@ -64,11 +64,11 @@ long World<Real>::substeps_for_hands(SolverKind kind, const EnvironmentDef& envi
 
 namespace {
 
-/// How many times as many substeps threads that lock need, where next to nothing damps: each time
-/// one locks or comes free within a substep, its energy changes by what its force changed by.
-double lock_margin(const StabilityBound& bound) {
+/// How many times as many substeps verlet takes where stiffness changes within a substep, of
+/// threads that lock or come free or are stretched far, and next to nothing damps.
+double undamped_margin(const StabilityBound& bound) {
   const double ratio = bound.damping_rate / (2 * std::sqrt(bound.omega2));
-  return 1 + kUndampedLocks * std::max(0.0, 1 - ratio / kDampsLocks);
+  return 1 + kUndampedMargin * std::max(0.0, 1 - ratio / kDampsEnough);
 }
 
 }  // namespace
@@ -86,7 +86,7 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
     bound.omega2 += part.bounds.membrane_omega2 + part.bounds.locking_omega2 + stretched;
     bound.damping_rate += part.bounds.membrane_damping_rate +
                           static_cast<double>(part.membrane_tensor.shear_time) * stretched;
-    if (part.locks.count > 0) bound.omega2 *= std::pow(lock_margin(bound), 2);
+    if (part.locks.count > 0 || stretched > 0) bound.omega2 *= std::pow(undamped_margin(bound), 2);
   }
   if (is_calm(environment)) return bound;
   double speed2 = 0;
