@@ -86,7 +86,7 @@ bool has_capacity(const Grabs<Real>& grabs) {
   return grabs.list.size() + grabs.impulses.size() < kMostGrabs;
 }
 
-/// Takes hold. The target starts at the held point unless `def.target` says otherwise. Throws
+/// Takes hold of the held point, from which the hand's path to `def.target` begins. Throws
 /// DefinitionError if a field is out of range or there are too many grabs.
 template <class Real>
 GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, const GrabDef& def,

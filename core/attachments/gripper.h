@@ -28,7 +28,7 @@ struct GripperDef {
   Eigen::Quaterniond orientation = Eigen::Quaterniond::Identity();
   Vec3d half_extents = Vec3d(0.005, 0.02, 0.02);  ///< of each jaw [m], each 0.001 to 1
   double opening = 0.04;                ///< between the jaws' faces at the start [m], 0 to 1
-  double force = 5;                     ///< pressure of each jaw [N], 0 to 1000
+  double force = 5;                     ///< with which each jaw presses [N], 0 to 1000
   double max_force = 100;               ///< resistance beyond which it lags [N], 0.01 to 1e6
   double speed = 0.25;                  ///< limit of its middle [m/s], 0.001 to 20
   double turn_speed = 2;                ///< limit about its middle [rad/s], 0.001 to 60
@@ -55,7 +55,7 @@ struct Gripper {
   Pose target;
   double speed = 0.25, turn_speed = 2;
   double opening = 0, wanted = 0;  ///< [m]
-  double force = 0;                ///< limit of each jaw's pressure [N]
+  double force = 0;                ///< with which each jaw presses, at most [N]
   double facing = 0;               ///< thickness of the cloth in front of both jaws; 0: none [m]
   bool commanded = false;          ///< follows commands instead of its steps
   bool gripping = false;           ///< the jaws are stopped by the cloth between them, and press it

@@ -8,7 +8,8 @@
 
 namespace weft {
 
-/// Remaining distance of a pin to a target, the largest over its particles [m].
+/// Remaining distance of a pin's middle particle to a target, or of its place if that is farther
+/// [m].
 template <class Real>
 double remaining_distance(const Pin& pin, const ClothState<Real>& state, const Vec3d& target);
 

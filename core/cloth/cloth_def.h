@@ -155,7 +155,7 @@ inline bool has_membrane_triangles(const ClothDef& def) {
   return def.mesh && def.membrane_model != MembraneModel::springs;
 }
 
-/// Checks every range and their combination (u and v independent, direct springs finite).
+/// Checks every range, that u and v are at right angles, and that the models suit the shape.
 /// Throws DefinitionError.
 void validate(const ClothDef& def);
 

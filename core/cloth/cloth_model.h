@@ -174,8 +174,8 @@ struct IndexRange {
 struct FrequencyBounds {
   double membrane_omega2 = 0, bending_omega2 = 0;
   double locking_omega2 = 0;         ///< of all threads that may lock
-  double membrane_shear_omega2 = 0;  ///< of it what goes with the square of the stretch; see
-                                     ///< membrane.h
+  double membrane_shear_omega2 = 0;  ///< the share of membrane_omega2 that grows with the square
+                                     ///< of the stretch; see membrane.h
   double membrane_damping_rate = 0, bending_damping_rate = 0;
   double area_per_mass = 0;  ///< that the air damps, in the worst motion [m^2/kg]
 };

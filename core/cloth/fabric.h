@@ -28,8 +28,8 @@ inline constexpr double kPoissonOfGrid = -1;
 /// times as stiff, so the energy per area grows by (factor - 1) Y (e - e_L)^2 / 2. Of verlet alone.
 struct FabricDef {
   double areal_density = 0.2;       ///< sigma [kg/m^2]
-  double stretch_warp = 400;        ///< Y_w [N/m], along the columns' direction u
-  double stretch_weft = 400;        ///< Y_f [N/m], along the rows' direction v
+  double stretch_warp = 400;        ///< Y_w [N/m], along u, the direction of a row
+  double stretch_weft = 400;        ///< Y_f [N/m], along v, the direction of a column
   double shear = 40;                ///< G [N/m]
   double poisson = kPoissonOfGrid;  ///< nu: what it narrows along v when pulled along u, per
                                     ///< strain; of a mesh, below the root of Y_w / Y_f

@@ -11,7 +11,7 @@ namespace weft {
 template <class Real>
 struct MembraneTensor {
   Real warp = 0, weft = 0;  ///< C11 = Y_w, C22 = Y_f [N/m]
-  Real coupling = 0;        ///< C12: Poisson's ratio times C22 [N/m]
+  Real coupling = 0;        ///< C12; see membrane_coupling() [N/m]
   Real shear = 0;           ///< C66 = G [N/m]
   Real stretch_time = 0;    ///< relaxation time of both stretches [s]
   Real shear_time = 0;      ///< and of shear [s]

@@ -49,8 +49,9 @@ inline constexpr double kFanStart = 0.25;
 
 // Gathering passes over a mesh.
 
-/// Springs at one particle; a mesh with more is stepped element by element. Larger: the hub of a
-/// wheel leaves nearly all slots of its group unused. Smaller: fewer meshes have the faster pass.
+/// Springs, or pairs of triangles, at one particle; a mesh with more is stepped element by element.
+/// Larger: the hub of a wheel leaves nearly all slots of its group unused. Smaller: fewer meshes
+/// have the faster pass.
 inline constexpr std::size_t kMostSpringsAtParticle = 64;
 
 /// Relative difference up to which the springs of a mesh have one damping per stiffness [1].

@@ -18,7 +18,7 @@ class EnergyPass {
   /// Sizes all arrays for a cloth.
   void prepare(const ClothModel<Real>& model);
 
-  /// Energies of springs and bending, and the largest strain.
+  /// Energies of membrane and bending, and the largest strain.
   /// @param x  of all particles of the model [m]
   ElasticEnergy elastic_energy(const ClothModel<Real>& model, const Vec3Array<Real>& x);
 

@@ -45,7 +45,7 @@ template <class Real>
 void add_quadratic_bending_forces(const ClothPart<Real>& part, const Vec3Array<Real>& x,
                                   Vec3Array<Real>& force);
 
-/// Adds the force of the air on all triangles, a third to each corner [N]; formula in air.h.
+/// Adds the force of the air on all triangles, a third to each corner [N]; formula in air_force.h.
 /// @param wind     velocity of the air at each particle [m/s]
 /// @param density  of the air [kg/m^3]
 template <class Real>

@@ -22,8 +22,8 @@ struct AirLaw {
   hn::Vec<D> pressure_sixth, skin_sixth, skin_eighteenth, third, smallest;
 };
 
-/// A third of the air force on triangles (a, b, c); the formula of air.h, with the area expressed
-/// by the length of the normal: A n = normal / 2.
+/// A third of the air force on triangles (a, b, c); the formula of air_force.h, with the area
+/// expressed by the length of the normal: A n = normal / 2.
 template <class D, class V = hn::Vec<D>>
 HWY_INLINE Triple<V> air_third(D d, const AirLaw<D>& law, const Triple<V>& ab, const Triple<V>& ac,
                                const Triple<V>& slip_sum) {

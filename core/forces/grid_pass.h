@@ -25,8 +25,8 @@ namespace weft {
 template <class Real>
 class GridPass {
  public:
-  /// Sizes the arrays that are always needed. A part that is not a grid, or has hinges, skip
-  /// springs or direct springs, does not fit and stays with the element-wise form.
+  /// Sizes the arrays that are always needed. A part that is not a grid, or has hinges, threads
+  /// that lock, skip springs or direct springs, does not fit and keeps the element-wise form.
   void prepare(const ClothPart<Real>& part);
 
   /// Sizes the arrays of external forces, and of the wind if there is air. Must precede every call
@@ -85,7 +85,7 @@ class GridPass {
   /// of `force`, which is the whole model's, and the external forces, whose arrays it sizes.
   void compute_internal_forces(Vec3Array<Real>& force);
 
-  /// Stores the air's force on each particle as the external force [N]. Formula in air.h.
+  /// Stores the air's force on each particle as the external force [N]. Formula in air_force.h.
   void compute_air_forces(double density);
 
   /// Energies of springs and bending, and the largest strain, at the grid's positions. Sums are per

@@ -41,7 +41,7 @@ struct GridView {
   std::ptrdiff_t line = 0;             ///< numbers per line, at least the columns in whole vectors
   const GridRow<Real>* row = nullptr;  ///< per row
   Real* motion = nullptr;     ///< x y z [m], 1/m [1/kg] (0 where pinned), vx vy vz [m/s], unused
-  Real* external = nullptr;   ///< forces of air and hands, three lines per row [N]
+  Real* external = nullptr;   ///< forces of air and slings, three lines per row [N]
   Real* wind = nullptr;       ///< velocity of the air, three lines per row [m/s]
   const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0
   GridSprings<Real> springs;

@@ -22,9 +22,10 @@ namespace weft {
 template <class Real>
 class MeshPass {
  public:
-  /// Lists the neighbours. A part whose springs are not all damped in proportion to their
-  /// stiffness, with more than 64 springs or pairs of triangles at a particle, or with neighbours
-  /// more than some thousand particles apart, does not fit and stays with the element-wise form.
+  /// Lists the neighbours. A part with springs that are not damped in proportion to stiffness, with
+  /// more than kMostSpringsAtParticle springs or pairs of triangles at a particle, or with
+  /// neighbours more than some thousand particles apart does not fit and keeps the element-wise
+  /// form.
   void prepare(const ClothModel<Real>& model, const ClothPart<Real>& part);
 
   bool fits() const { return view_.count > 0; }

@@ -53,8 +53,8 @@ std::optional<RayHit<double>> cast_in_frame(const RayFrame& f, const Vec3d& a, c
   return RayHit<double>{t, kNone, {u / determinant, v / determinant, w / determinant}};
 }
 
-/// Parameter at which the ray enters a box, infinite if it misses. The bounds are widened by some
-/// units in the last place, so that rounding never misses a box.
+/// Parameter at which the ray enters a box, infinite if it misses. The bounds are widened by
+/// kRaySlack, so that rounding never misses a box.
 double entry(const Vec3d& origin, const Vec3d& direction, const Vec3d& lower, const Vec3d& upper) {
   constexpr double kWide = 1 + kRaySlack;
   double from = 0, to = std::numeric_limits<double>::infinity();

@@ -36,7 +36,7 @@ class BendingDashpots {
 
   bool empty() const { return parts_.empty(); }
 
-  /// Most stages that a part takes over some time [s]; odd, at least 3.
+  /// Most stages that a part takes over some time [s]: odd, at least 3; 0 if no part damps bending.
   int stages(const ClothModel<Real>& model, double seconds) const;
   /// Estimated work, in updates of a particle by the springs of a grid [1], of the part that takes
   /// most.

@@ -7,8 +7,8 @@
 #include "core/cloth/cloth_state.h"
 #include "core/solver/constants.h"
 
-// Checks a substep with one maximum over all particles before contact sees them, so that no tree,
-// grid or index computation meets a number that is absurd or not finite.
+// Checks the motion of all particles before contact reads them, so that no tree, grid or index
+// computation meets a number that is absurd or not finite.
 
 namespace weft {
 

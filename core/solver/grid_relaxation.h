@@ -23,7 +23,7 @@ struct SweepView {
   std::ptrdiff_t half = 0, stride = 0;
   Real* x[3] = {};               ///< positions at the start of the substep [m]
   Real* displacement[3] = {};    ///< x' - x, displacement of the substep [m]
-  const Real* force[3] = {};     ///< of hands and air [N]; read on request
+  const Real* force[3] = {};     ///< of hands, slings and air [N]; read on request
   const Real* w = nullptr;       ///< inverse masses [1/kg], 0 if pinned
   const Real* free = nullptr;    ///< 1, or 0 if pinned
   const Real* share[4] = {};     ///< 1/(w_i + w_j + alpha~) [kg] of each spring by its first cell:

@@ -39,8 +39,8 @@ void visit_fields_of_relaxation(Def& r, Visitor&& visit) {
 /// Arrays that live across ticks, so that no step allocates.
 template <class Real>
 struct RelaxationWorkspace {
-  Vec3Array<Real> force;                    ///< of bending, hands and air [N]
-  Vec3Array<Real> external;                 ///< of hands and air only [N]
+  Vec3Array<Real> force;                    ///< of bending, hands, slings and air [N]
+  Vec3Array<Real> external;                 ///< of slings and air only [N]
   Vec3Array<Real> wanted;                   ///< positions before contact, or displacements [m]
   std::vector<Real> multiplier;             ///< of each spring, within the substep [N s^2]
   Vec3Array<Real> membrane_multiplier;      ///< of each triangle's strains, likewise [kg m^2]

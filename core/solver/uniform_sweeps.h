@@ -18,7 +18,7 @@ struct SweptSubstep {
 using SweptTensor = Eigen::Matrix3d;
 
 /// Of a whole grid whose cells are alike, in its middle.
-/// @param model  one part, at least 12 cells each way
+/// @param model  one part, at least kProbedCells + 2 cells each way
 SweptTensor swept_tensor_of_grid(const ClothModel<double>& model, const SweptSubstep& substep);
 
 /// Of a mesh of membrane triangles that is flat in its material coordinates, over the triangles

@@ -13,9 +13,9 @@ namespace weft {
 /// begins to matter, and a strong pull of a hand is not mistaken for one.
 ///
 /// Mechanical energy (kinetic and elastic) can only come from the start, from falling, and from the
-/// work of hands and air. Losses are not deducted at once: unexplained energy decays over about a
-/// second, because close to the stability limit the energy of the highest modes, summed at one
-/// instant, varies by a factor of ten in normal operation.
+/// work of hands, air, objects and pins. Losses are not deducted at once: unexplained energy decays
+/// over about a second (kCreditSeconds), because close to the stability limit the energy of the
+/// highest modes, summed at one instant, varies by a factor of ten in normal operation.
 class EnergyAccount {
  public:
   /// @param total_mass  of the cloth [kg]

@@ -8,8 +8,7 @@
 namespace weft {
 namespace {
 
-/// Impulses of contacts on the particles of each pin, by particle [N s].
-template <class Real>
+/// Impulses of contacts by particle [N s].
 Vec3Array<double> impulses_of(const std::vector<ContactPoint>& contacts, std::size_t particles,
                               double seconds) {
   Vec3Array<double> impulse(particles, Vec3d::Zero());
@@ -28,8 +27,7 @@ void add_pin_reactions(const ClothModel<Real>& model, const Vec3<Real>& gravity,
                        const HeldForces<Real>& held, double seconds, Reactions& reactions) {
   if (pins.list.empty()) return;
   assert(seconds > 0 && pins.pin_count.size() == model.mass.size());
-  const Vec3Array<double> pushed =
-      impulses_of<Real>(reactions.contacts, model.mass.size(), seconds);
+  const Vec3Array<double> pushed = impulses_of(reactions.contacts, model.mass.size(), seconds);
   for (const Pin& pin : pins.list) {
     PinReaction reaction{pin.id, Vec3d::Zero()};
     const bool fixed = std::all_of(pin.particles.begin(), pin.particles.end(),

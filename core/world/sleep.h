@@ -69,7 +69,7 @@ class Sleep {
                     const ColliderState& collider);
 
   /// Wakes the islands of sleeping cloths that were disturbed, or that an awake one could touch in
-  /// the coming tick.
+  /// the coming ticks.
   /// @return whether any woke
   bool rouse(const Pins& pins, ClothState<Real>& state);
   /// Wakes the island of a cloth, or all; stillness of awake cloths restarts.

@@ -36,7 +36,7 @@ enum class DivergenceCause : std::uint8_t {
   not_finite,      ///< a position, velocity or energy is NaN or infinite
   too_fast,        ///< a particle moved farther in a substep than its cloth's diagonal
   too_far,         ///< a particle is more than kFarthestFromOrigin from the origin
-  energy_runaway,  ///< more energy than before plus the work of hands and air
+  energy_runaway,  ///< more energy than before, plus the work done on the cloth
   unsolved,        ///< the implicit solver could not solve a linear system
 };
 
@@ -52,7 +52,7 @@ struct Divergence {
   DivergenceRemedy remedy = DivergenceRemedy::stopped_cloth;
   std::uint64_t tick = 0;
   Index particle = kNone;  ///< the first faulty one, or the fastest
-  double value = 0;        ///< unexplained energy [J], speed [m/s], distance [m], or that number
+  double value = 0;        ///< unexplained energy [J], speed [m/s] or distance [m]
   int substeps = 0;        ///< of the last failed attempt
 };
 
@@ -87,7 +87,7 @@ struct ClothHit {
   Index nearest_particle = kNone;  ///< the corner nearest to the intersection
 };
 
-/// Services supplied by the owner. Neither changes any result.
+/// Services supplied by the owner. None changes any result.
 struct Runtime {
   Executor* executor = nullptr;  ///< runs independent chunks; null: serially
   double (*clock)() = nullptr;   ///< seconds, only for the profile
@@ -348,7 +348,7 @@ class World {
     std::optional<ClothGuard<Real>> guard;  ///< of cloths, if chosen
   };
   Contacts contact_;
-  /// Arrays and memory of the solvers. Any may step a tick that another one gives up.
+  /// Arrays and memory of the solvers. Verlet also steps the ticks that implicit gives up.
   struct Solvers {
     VerletWorkspace<Real> verlet;
     RelaxationWorkspace<Real> relaxation;
