@@ -11,10 +11,6 @@
 namespace weft {
 namespace {
 
-Eigen::Quaterniond turned(const Gripper& gripper, const Eigen::Quaterniond& rotation) {
-  return rotation * gripper.def.orientation;
-}
-
 /// Offset of a jaw's middle from the gripper's, as defined [m].
 Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
   assert(jaw < 2 && opening >= 0);
@@ -178,7 +174,7 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
 
 Vec3d press_of(const Gripper& gripper, std::size_t jaw) {
   assert(jaw < 2);
-  const Vec3d axis = turned(gripper, gripper.pose.rotation) * Vec3d::UnitX();
+  const Vec3d axis = (gripper.pose.rotation * gripper.def.orientation) * Vec3d::UnitX();
   return jaw == 0 ? axis : Vec3d(-axis);
 }
 

@@ -138,19 +138,6 @@ double bending_rigidity(double areal_density, double bending_length) {
   return areal_density * kGravity * bending_length * bending_length * bending_length;
 }
 
-FabricDef measured_fabric(const FabricDef& base, double areal_density, double warp, double weft) {
-  FabricDef fabric = base;
-  visit_fields_of_fabric(base, [&](const FieldInfo& info, double) {
-    if (std::string(info.name) == "areal_density") check_field("fabric.", info, areal_density);
-  });
-  check_field("fabric.", {"bending_length_warp", 0, kLongestBendingLength, "m", "along u"}, warp);
-  check_field("fabric.", {"bending_length_weft", 0, kLongestBendingLength, "m", "along v"}, weft);
-  fabric.areal_density = areal_density;
-  fabric.bending_warp = bending_rigidity(areal_density, warp);
-  fabric.bending_weft = bending_rigidity(areal_density, weft);
-  return fabric;
-}
-
 FabricDef make_fabric(const std::string& name) {
   std::string names;
   for (const FabricPreset& preset : fabric_presets()) {

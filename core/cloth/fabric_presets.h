@@ -5,7 +5,7 @@
 
 #include "core/cloth/fabric.h"
 
-// Named fabrics, and fabrics from measurements.
+// Named fabrics, and the rigidity that a bending length tells.
 
 namespace weft {
 
@@ -34,14 +34,6 @@ inline constexpr double kLongestBendingLength = 0.2;  ///< largest accepted [m]
 /// @param areal_density   sigma [kg/m^2]
 /// @param bending_length  c [m]: half the overhang at which a strip droops by 41.5 degrees
 double bending_rigidity(double areal_density, double bending_length);
-
-/// A fabric from a measurement: mass per area and bending lengths, everything else as in `base`.
-/// Throws DefinitionError on "fabric.areal_density", "fabric.bending_length_warp" or
-/// "fabric.bending_length_weft" if a number is out of range.
-/// @param areal_density  [kg/m^2], in the range of every fabric
-/// @param warp,weft      bending lengths of strips cut along warp and weft [m], 0 to
-///                       kLongestBendingLength
-FabricDef measured_fabric(const FabricDef& base, double areal_density, double warp, double weft);
 
 /// The published band of the preset with exactly these values; both 0 for all others.
 DrapeBand published_drape(const FabricDef& fabric);

@@ -85,19 +85,6 @@ void CrossingSurface::fit() {
   tree_.empty() ? tree_.build(boxes_) : tree_.refit(boxes_);
 }
 
-Crossings count_self_crossings(const CrossingSurface& cloth) {
-  Crossings sum;
-  for_each_crossing(cloth, cloth, true, adding_to(sum));
-  return sum;
-}
-
-Crossings count_crossings(const CrossingSurface& cloth, const CrossingSurface& object) {
-  Crossings sum;
-  for_each_crossing(cloth, object, false, adding_to(sum));
-  for_each_crossing(object, cloth, false, adding_to(sum));
-  return sum;
-}
-
 template <class Real>
 Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edges,
                                const std::vector<Triangle>& triangles, Bvh<double>& tree) {
@@ -116,7 +103,10 @@ Crossings count_crossings(const Vec3Array<Real>& x, const std::vector<Edge>& edg
   CrossingSurface cloth(edges, triangles), object(mesh);
   cloth.place(x.size(), [&x](std::size_t i) -> Vec3d { return x[i].template cast<double>(); });
   object.place(mesh.positions.size(), [&mesh](std::size_t i) { return mesh.positions[i]; });
-  return count_crossings(cloth, object);
+  Crossings sum;
+  for_each_crossing(cloth, object, false, adding_to(sum));
+  for_each_crossing(object, cloth, false, adding_to(sum));
+  return sum;
 }
 
 #define WEFT_INSTANTIATE(Real)                                                              \

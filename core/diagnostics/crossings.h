@@ -99,12 +99,6 @@ void for_each_crossing(const CrossingSurface& edges, const CrossingSurface& tria
                     one_cloth, triangles.tree(), see);
 }
 
-/// Counts edges through triangles that share no vertex with them, in a placed surface.
-Crossings count_self_crossings(const CrossingSurface& cloth);
-
-/// Counts edges of either through triangles of the other; both must be placed.
-Crossings count_crossings(const CrossingSurface& cloth, const CrossingSurface& object);
-
 /// Counts edges of cloths through triangles of cloths that share no particle with them.
 /// @param x     positions of all particles [m], finite
 /// @param tree  over the same triangles, kept by the caller between counts; built if it is empty

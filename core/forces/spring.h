@@ -6,7 +6,7 @@
 #include "core/forces/constants.h"
 #include "core/types.h"
 
-// Force and energy of a spring.
+// Force of a spring.
 
 namespace weft {
 
@@ -18,13 +18,6 @@ inline Vec3<Real> spring_force(const Spring<Real>& s, const Vec3<Real>& d, const
   const Real elastic = s.stiffness * (Real(1) - s.rest_length / std::sqrt(l2));
   const Real damping = s.damping * (d.dot(dv) / l2);
   return d * (elastic + damping);
-}
-
-/// Elastic energy k/2 (l - L)^2 [J].
-template <class Real>
-inline Real spring_energy(const Spring<Real>& s, const Vec3<Real>& d) {
-  const Real stretch = std::sqrt(d.squaredNorm() + Real(kSmallestSquaredLength)) - s.rest_length;
-  return Real(0.5) * s.stiffness * stretch * stretch;
 }
 
 }  // namespace weft

@@ -7,7 +7,6 @@
 #include "core/cloth/fabric_presets.h"
 #include "core/diagnostics/cantilever.h"
 #include "core/diagnostics/drape.h"
-#include "core/error.h"
 #include "core/scenes/scenes.h"
 #include "core/scenes/textile_scenes.h"
 #include "core/world/world.h"
@@ -262,25 +261,9 @@ TEST_CASE(
   CHECK(swing.decay().relaxation_time() == 0);
 }
 
-TEST_CASE("a fabric measured by its bending lengths has B = sigma g c^3 and the rest of its base") {
-  const FabricDef base = make_fabric("wool");
-  const FabricDef own = measured_fabric(base, 0.324, 0.02662639748288505, 0.02);
-  CHECK(own.bending_warp == Approx(6e-5).epsilon(1e-6));  // fabric_cantilever.table, denim
-  CHECK(own.bending_weft == Approx(0.324 * 9.81 * 8e-6));
-  CHECK(own.areal_density == 0.324);
-  CHECK(own.stretch_warp == base.stretch_warp);
-  CHECK(own.friction == base.friction);
-  const auto refused = [&](double density, double warp, double weft) {
-    try {
-      measured_fabric(base, density, warp, weft);
-    } catch (const DefinitionError& error) {
-      return error.field;
-    }
-    return std::string();
-  };
-  CHECK(refused(0, 0.02, 0.02) == "fabric.areal_density");
-  CHECK(refused(0.2, -0.02, 0.02) == "fabric.bending_length_warp");
-  CHECK(refused(0.2, 0.02, std::nan("")) == "fabric.bending_length_weft");
+TEST_CASE("a fabric with a bending length c has the rigidity B = sigma g c^3") {
+  CHECK(bending_rigidity(0.324, 0.02662639748288505) == Approx(6e-5).epsilon(1e-6));  // denim
+  CHECK(bending_rigidity(0.324, 0.02) == Approx(0.324 * 9.81 * 8e-6));
 }
 
 TEST_CASE("a scene that is no test measures nothing, and one that does not fit its test neither") {
