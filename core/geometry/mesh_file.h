@@ -5,6 +5,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/geometry/constants.h"
 #include "core/geometry/triangle_mesh.h"
 
 // Reads and writes triangle meshes in common file formats.
@@ -27,8 +28,8 @@ struct MeshFile {
 /// Largest accepted file; checked before and after parsing.
 struct MeshFileLimits {
   std::size_t bytes = 64 << 20;
-  std::size_t vertices = 1'000'000;
-  std::size_t triangles = 2'000'000;
+  std::size_t vertices = kMostMeshVertices;
+  std::size_t triangles = kMostMeshTriangles;
 };
 
 /// Whether the name ends in .obj, .ply, .stl or .glb, in lower case.

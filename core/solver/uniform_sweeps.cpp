@@ -89,15 +89,14 @@ std::vector<double> swept_springs(const ClothModel<double>& model, const Vec3Arr
 
 /// Whether a site lies in the square in the middle of a grid, and on its border.
 struct MiddleOfGrid {
-  int top, left, rows, columns;  ///< of the square, in cells
+  int top, left;  ///< of the square, in cells
 
   explicit MiddleOfGrid(const GridCells& g)
-      : top((g.rows - 1 - kProbedCells) / 2), left((g.columns - 1 - kProbedCells) / 2),
-        rows(kProbedCells), columns(kProbedCells) {
+      : top((g.rows - 1 - kProbedCells) / 2), left((g.columns - 1 - kProbedCells) / 2) {
     assert(top > 0 && left > 0);
   }
   bool contains(int r, int c) const {
-    return r >= top && r <= top + rows && c >= left && c <= left + columns;
+    return r >= top && r <= top + kProbedCells && c >= left && c <= left + kProbedCells;
   }
 };
 
@@ -112,8 +111,8 @@ Vec3d mean_stress(const ClothModel<double>& model, const std::vector<double>& fo
               c1 = s.j % g.columns;
     if (!middle.contains(r0, c0) || !middle.contains(r1, c1)) continue;
     // A spring on the square's border belongs to it by half.
-    const bool along_row = r0 == r1 && (r0 == middle.top || r0 == middle.top + middle.rows);
-    const bool down = c0 == c1 && (c0 == middle.left || c0 == middle.left + middle.columns);
+    const bool along_row = r0 == r1 && (r0 == middle.top || r0 == middle.top + kProbedCells);
+    const bool down = c0 == c1 && (c0 == middle.left || c0 == middle.left + kProbedCells);
     const auto &a = model.material[static_cast<std::size_t>(s.i)],
                &b = model.material[static_cast<std::size_t>(s.j)];
     const double du = b[0] - a[0], dv = b[1] - a[1], length = std::hypot(du, dv);
@@ -121,7 +120,7 @@ Vec3d mean_stress(const ClothModel<double>& model, const std::vector<double>& fo
         Vec3d(du * du, dv * dv, du * dv) * (forces[k] / length * (along_row || down ? 0.5 : 1.0));
   }
   const auto& part = model.parts.front();
-  return sum / (part.cell_u * part.cell_v * middle.rows * middle.columns);
+  return sum / (part.cell_u * part.cell_v * kProbedCells * kProbedCells);
 }
 
 /// The mean of both directions, by unit strains.
