@@ -1,7 +1,5 @@
 #pragma once
 
-#include <vector>
-
 #include "core/cloth/cloth_model.h"
 
 // Bending of a mesh.

@@ -2,7 +2,6 @@
 
 #include "core/diagnostics/cantilever.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <numbers>

@@ -2,7 +2,6 @@
 
 #include "core/diagnostics/dashpots.h"
 
-#include <array>
 #include <cassert>
 
 #include "core/forces/constants.h"

@@ -2,7 +2,6 @@
 
 #include "core/forces/force_pass.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 

@@ -7,7 +7,6 @@
 #define WEFT_GRID_LAYOUT_INL_H
 #endif
 
-#include <algorithm>
 #include <cstddef>
 
 #include <hwy/highway.h>

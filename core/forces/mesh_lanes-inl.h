@@ -7,8 +7,6 @@
 #define WEFT_MESH_LANES_INL_H
 #endif
 
-#include <algorithm>
-
 #include "core/forces/kick-inl.h"
 #include "core/forces/mesh_view.h"
 

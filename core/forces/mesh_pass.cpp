@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numeric>
 #include <tuple>
-#include <utility>
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/constants.h"

@@ -1,8 +1,5 @@
 #pragma once
 
-#include <array>
-#include <cmath>
-
 #include "core/cloth/cloth_model.h"
 #include "core/types.h"
 

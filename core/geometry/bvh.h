@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cassert>
-#include <optional>
 #include <vector>
 
 #include "core/geometry/aabb.h"

@@ -2,7 +2,6 @@
 
 #include "core/geometry/mesh_file.h"
 
-#include <algorithm>
 #include <cassert>
 #include <cmath>
 #include <cstdint>

@@ -3,7 +3,6 @@
 #include "core/geometry/triangle_mesh.h"
 
 #include <cassert>
-#include <cmath>
 #include <map>
 
 #include "core/definition.h"

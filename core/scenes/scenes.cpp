@@ -2,7 +2,6 @@
 
 #include "core/scenes/scenes.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "core/cloth/fabric_presets.h"

@@ -2,7 +2,6 @@
 
 #include "core/solver/fused_steps.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "core/solver/constants.h"

@@ -2,9 +2,7 @@
 
 #include "core/solver/grid_relaxation.h"
 
-#include <algorithm>
 #include <cassert>
-#include <cstdint>
 
 namespace weft {
 namespace {

@@ -3,7 +3,6 @@
 #include "core/world/pin_extent.h"
 
 #include <algorithm>
-#include <array>
 #include <cassert>
 #include <cmath>
 #include <cstdio>

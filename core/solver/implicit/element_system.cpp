@@ -2,7 +2,6 @@
 
 #include "core/solver/implicit/element_system.h"
 
-#include <algorithm>
 #include <cassert>
 
 #include "core/cloth/bending_stencil.h"
