@@ -5,11 +5,12 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <numbers>
+
+#include "core/cloth/membrane.h"
 
 namespace weft {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Smallest positive root of cos x cosh x = -1.
 constexpr double kFirstRootOfCantilever = 1.8751040687119612;
@@ -19,12 +20,11 @@ constexpr double kFirstRootOfCantilever = 1.8751040687119612;
 double angular_frequency(const FabricDef& fabric, FabricMode mode, double length) {
   assert(length > 0 && fabric.areal_density > 0);
   const auto wave = [&](double stiffness) {
-    return kPi / length * std::sqrt(stiffness / fabric.areal_density);
+    return std::numbers::pi / length * std::sqrt(stiffness / fabric.areal_density);
   };
   if (mode == FabricMode::shear) return wave(fabric.shear);
   if (mode == FabricMode::stretch) {
-    const bool own = fabric.poisson != kPoissonOfGrid;
-    const double coupling = own ? fabric.poisson * fabric.stretch_weft : fabric.shear;
+    const double coupling = membrane_coupling(fabric);
     const double narrowed = fabric.stretch_weft > 0 ? coupling * coupling / fabric.stretch_weft : 0;
     return wave(std::max(fabric.stretch_warp - narrowed, 0.0));
   }

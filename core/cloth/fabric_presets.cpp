@@ -4,6 +4,7 @@
 
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include "core/cloth/fabric_modes.h"
 #include "core/error.h"
@@ -97,7 +98,7 @@ FabricDef nylon() {
 
 /// Relaxation time of bending for a loss factor of waves along the warp [s].
 double relaxation_in_waves(const FabricDef& fabric) {
-  constexpr double kWave = 2 * 3.14159265358979323846 / 0.05;  // [1/m]
+  constexpr double kWave = 2 * std::numbers::pi / 0.05;  // [1/m]
   constexpr double kLossFactor = 0.2;
   const double omega = kWave * kWave * std::sqrt(fabric.bending_warp / fabric.areal_density);
   return relaxation_of_loss(omega, kLossFactor);

@@ -2,9 +2,9 @@
 
 #include "core/diagnostics/crossings.h"
 
-#include <cassert>
 #include <utility>
 
+#include "core/geometry/ray_cast.h"
 #include "core/math/exact_sign.h"
 
 namespace weft {
@@ -12,28 +12,12 @@ namespace {
 
 using Positions = std::vector<Vec3d>;
 
-const Vec3d& at(const Positions& x, Index i) {
-  assert(static_cast<std::size_t>(i) < x.size());
-  return x[static_cast<std::size_t>(i)];
-}
-
 template <class Real>
 Positions in_double(const Vec3Array<Real>& x) {
   Positions result;
   result.reserve(x.size());
   for (const Vec3<Real>& p : x) result.push_back(p.template cast<double>());
   return result;
-}
-
-/// Boxes around triangles; the array keeps its capacity.
-void fit_boxes(const Positions& x, const std::vector<Triangle>& triangles,
-               std::vector<Aabb<double>>& boxes) {
-  boxes.clear();
-  for (const Triangle& t : triangles) {
-    Aabb<double> box;
-    for (const Index v : t) box.add(at(x, v));
-    boxes.push_back(box);
-  }
 }
 
 /// A visitor that sums crossings.
@@ -81,7 +65,7 @@ CrossingSurface::CrossingSurface(const TriangleMesh& mesh)
 
 void CrossingSurface::fit() {
   if (triangles_.empty()) return;
-  fit_boxes(positions_, triangles_, boxes_);
+  triangle_boxes(positions_, triangles_, boxes_);
   tree_.empty() ? tree_.build(boxes_) : tree_.refit(boxes_);
 }
 
@@ -91,7 +75,7 @@ Crossings count_self_crossings(const Vec3Array<Real>& x, const std::vector<Edge>
   Crossings sum;
   const Positions positions = in_double(x);
   std::vector<Aabb<double>> boxes;
-  fit_boxes(positions, triangles, boxes);
+  triangle_boxes(positions, triangles, boxes);
   tree.empty() ? tree.build(boxes) : tree.refit(boxes);
   for_each_crossing(positions, edges, positions, triangles, true, tree, adding_to(sum));
   return sum;

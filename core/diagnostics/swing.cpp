@@ -4,14 +4,16 @@
 
 #include <cassert>
 #include <cmath>
+#include <numbers>
 
 #include "core/cloth/fabric_modes.h"
 #include "core/diagnostics/constants.h"
 
 namespace weft {
+
 namespace {
 
-constexpr double kPi = 3.14159265358979323846;
+using std::numbers::pi;
 
 }  // namespace
 
@@ -64,11 +66,11 @@ Swing::Decay Swing::decay() const {
 }
 
 double Swing::Decay::relaxation_time() const {
-  return decay_time == 0 ? 0 : relaxation_of_decay(2 * kPi / period, decay_time);
+  return decay_time == 0 ? 0 : relaxation_of_decay(2 * pi / period, decay_time);
 }
 
 double Swing::Decay::loss_factor() const {
-  return decay_time == 0 ? 0 : period / (kPi * decay_time);
+  return decay_time == 0 ? 0 : period / (pi * decay_time);
 }
 
 }  // namespace weft

@@ -154,20 +154,6 @@ class FlatTriangles {
   std::size_t cut_ = 0;  // flat triangles replaced by half of their neighbour
 };
 
-/// The enclosed volume, relative to a point near the mesh so that rounding does not decide its
-/// sign.
-double volume_of(const TriangleMesh& mesh) {
-  assert(!mesh.positions.empty());
-  double sum = 0;
-  const Vec3d& origin = mesh.positions.front();
-  for (const Triangle& t : mesh.triangles) {
-    const Vec3d a = at(mesh, t[0]) - origin, b = at(mesh, t[1]) - origin,
-                c = at(mesh, t[2]) - origin;
-    sum += a.dot(b.cross(c)) / 6;
-  }
-  return sum;
-}
-
 }  // namespace
 
 bool is_degenerate(const TriangleMesh& mesh, const Triangle& t) {
@@ -187,7 +173,7 @@ MeshRepair repair(TriangleMesh& mesh) {
     done.opened = closed && !is_closed(mesh);
   }
   const double least = kLeastEnclosedVolume * std::pow(surface_area(mesh), 1.5);
-  if (!(volume_of(mesh) < -least) || !is_closed(mesh)) return done;
+  if (!(enclosed_volume(mesh) < -least) || !is_closed(mesh)) return done;
   for (Triangle& t : mesh.triangles) std::swap(t[1], t[2]);
   done.turned = true;
   return done;

@@ -140,8 +140,10 @@ void triangle_boxes(const Vec3Array<Real>& positions, const std::vector<Triangle
   boxes.resize(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     boxes[t] = Aabb<Real>{};
-    for (const Index corner : triangles[t])
+    for (const Index corner : triangles[t]) {
+      assert(static_cast<std::size_t>(corner) < positions.size());
       boxes[t].add(positions[static_cast<std::size_t>(corner)]);
+    }
   }
 }
 

@@ -32,7 +32,7 @@ std::optional<RayHit<Real>> cast_ray(const Vec3<Real>& origin, const Vec3<Real>&
                                      const Bvh<Real>& hierarchy, const Vec3Array<Real>& positions,
                                      const std::vector<Triangle>& triangles);
 
-/// Boxes of triangles, for a hierarchy; `boxes` is resized.
+/// Boxes of triangles, for a hierarchy; `boxes` is resized and keeps its capacity.
 template <class Real>
 void triangle_boxes(const Vec3Array<Real>& positions, const std::vector<Triangle>& triangles,
                     std::vector<Aabb<Real>>& boxes);

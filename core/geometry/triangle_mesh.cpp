@@ -66,8 +66,10 @@ double surface_area(const TriangleMesh& mesh) {
 double enclosed_volume(const TriangleMesh& mesh) {
   double sum = 0;
   for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
-    const auto i = static_cast<Index>(t);
-    sum += corner(mesh, i, 0).dot(corner(mesh, i, 1).cross(corner(mesh, i, 2))) / 6;
+    const auto at = [&](std::size_t k) -> Vec3d {
+      return corner(mesh, static_cast<Index>(t), k) - mesh.positions.front();
+    };
+    sum += at(0).dot(at(1).cross(at(2))) / 6;
   }
   return sum;
 }

@@ -52,8 +52,10 @@ std::vector<MeshEdge> edges_of(const TriangleMesh& mesh);
 bool is_closed(const TriangleMesh& mesh);
 
 double surface_area(const TriangleMesh& mesh);  ///< [m^2]
-double enclosed_volume(
-    const TriangleMesh& mesh);  ///< [m^3], positive if the triangles face outwards
+
+/// Volume of a closed mesh [m^3], positive if its triangles face outwards. Computed about a vertex,
+/// so that rounding does not decide its sign far from the origin.
+double enclosed_volume(const TriangleMesh& mesh);
 
 Vec3d unit_normal(const TriangleMesh& mesh, Index triangle);  ///< zero if the triangle has no area
 

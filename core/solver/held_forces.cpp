@@ -203,8 +203,7 @@ void HeldForces<Real>::act(std::size_t part, const Surroundings<Real>& around,
   for (const Index i : held_) {
     Vec3<Real>& force = force_[static_cast<std::size_t>(i)];
     if (!near.particles.contains(i)) continue;
-    impulse_[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])] +=
-        force.template cast<double>() * seconds;
+    push(i, force.template cast<double>() * seconds);
     force.setZero();
   }
 }
@@ -218,9 +217,7 @@ void HeldForces<Real>::act(const Surroundings<Real>& around, const Vec3Array<Rea
 template <class Real>
 void HeldForces<Real>::pull(const Grabs<Real>& grabs, double seconds) {
   const auto give = [this](Index i, const Vec3<Real>& impulse) {
-    if (!holds(i)) return;
-    impulse_[static_cast<std::size_t>(place_[static_cast<std::size_t>(i)])] +=
-        impulse.template cast<double>();
+    if (holds(i)) push(i, impulse.template cast<double>());
   };
   for (const Grab<Real>& grab : grabs.list) {
     if (grab.def.mode != GrabMode::live) continue;

@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <optional>
 
+#include "core/cloth/membrane.h"
 #include "core/solver/uniform_sweeps.h"
 
 namespace weft {
@@ -39,14 +40,11 @@ bool is_flat_in_uv(const ClothModel<double>& model) {
 }
 
 /// The fabric's own tensor, in the order of a SweptTensor.
-SweptTensor tensor_of(const ClothDef& cloth) {
-  const FabricDef& f = cloth.fabric;
-  const bool own = cloth.mesh && f.poisson != kPoissonOfGrid;
-  const double coupling = own ? f.poisson * f.stretch_weft : f.shear;
+SweptTensor tensor_of(const FabricDef& f) {
   SweptTensor tensor = SweptTensor::Zero();
   tensor(0, 0) = f.stretch_warp;
   tensor(1, 1) = f.stretch_weft;
-  tensor(0, 1) = tensor(1, 0) = coupling;
+  tensor(0, 1) = tensor(1, 0) = membrane_coupling(f);
   tensor(2, 2) = f.shear;
   return tensor;
 }
@@ -171,7 +169,7 @@ std::vector<EffectiveModuli> effective_moduli(const World<Real>& world) {
     moduli.substeps = substeps;
     moduli.sweeps = def.relaxation.sweeps;
     if (auto model = probe_of(cloths[k])) {
-      const Probe probe{std::move(*model), tensor_of(cloths[k]), def.relaxation.compliance,
+      const Probe probe{std::move(*model), tensor_of(cloths[k].fabric), def.relaxation.compliance,
                         world.tick_seconds(), def.relaxation.sweeps};
       const bool flat = probe.model.membrane.empty() || is_flat_in_uv(probe.model);
       if (flat && probe.work() <= kMostProbedSprings) {

@@ -5,13 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <numbers>
 
 #include "core/cloth/stability_bound.h"
 
 namespace weft {
 namespace {
-
-constexpr double kPi = 3.14159265358979323846;
 
 /// Extent of a part along the warp [m].
 template <class Real>
@@ -27,7 +26,7 @@ double warp_length(const ClothModel<Real>& model, const IndexRange& particles) {
 /// Part of its energy that the first stretch wave loses in a second.
 template <class Real>
 double loss_of_wave(const ClothModel<Real>& model, const ClothPart<Real>& part, double time) {
-  const double wave = kPi / warp_length(model, part.particles);
+  const double wave = std::numbers::pi / warp_length(model, part.particles);
   const double omega2 = wave * wave * part.fabric.stretch_warp / part.fabric.areal_density;
   return 1 - std::exp(-time * omega2);
 }
