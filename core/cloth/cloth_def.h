@@ -37,8 +37,8 @@ enum class MembraneModel {
 /// The shape that a mesh has without strain.
 enum class RestShape {
   placed,  ///< as its vertices lie in space
-  uv,      ///< flat, as its (u, v) in metres say: it starts strained where its vertices lie. With
-           ///< seams each triangle rests on its own, and all is unbent
+  uv,      ///< flat, in the shape of its (u, v) in metres; it starts strained where its vertices
+           ///< lie. With seams each triangle rests on its own, and nothing is bent at rest
 };
 
 /// Outline of a grid within its rectangle.
@@ -144,7 +144,7 @@ void visit_fields_of_direct_springs(Def& d, Visitor&& visit) {
   visit(FieldInfo{"dashpot", 0, 1e3, "N s/m", "along every spring"}, d.dashpot);
 }
 
-/// Whether the quadratic form may replace the hinges: in a cloth that is at rest as it is made.
+/// Whether the quadratic form may replace the hinges: if no rest angle is asked for.
 inline bool quadratic_bending_fits(const ClothDef& def) {
   return def.rest_angle == 0;
 }

@@ -73,11 +73,11 @@ struct QuadraticBending {
 /// constant matrix, whose rows sum to zero; see mesh_bending.h.
 struct BendingLink {
   Index i = 0, j = 0;  ///< counted from the part's first particle
-  double weight = 0;   ///< of either sign [N/m]; in double, for what is flat is a sum that vanishes
+  double weight = 0;   ///< of either sign [N/m]; in double, because pulls on flat cloth must cancel
 };
 
 /// Curvatures of a mesh's triangles along both threads and between them, each a sum over particles
-/// near by. Their squares are the energy that the links are; the dashpots need each on its own.
+/// near by. The links sum the energies of their squares; the dashpots need each on its own.
 template <class Real>
 struct TriangleCurvatures {
   std::vector<std::size_t> begin;   ///< of each triangle's particles below, and the last one's end
@@ -86,9 +86,9 @@ struct TriangleCurvatures {
   std::vector<Vec3<Real>> stiffness;  ///< by triangle: rigidity times area [N m^3]
 };
 
-/// What curves a mesh at rest. A triangle whose curvatures are c = sum_i w_i x_i, and at rest kappa
-/// along its normal n, has the energy sum k/2 |c - kappa n|^2. Here is what the links lack of it:
-/// -n . sum_i pull_i x_i with pull = sum k kappa w, and the sum of all k/2 kappa^2.
+/// Rest shape of a curved mesh. A triangle with the curvatures c = sum_i w_i x_i, at rest kappa
+/// along its normal n, has the energy sum k/2 |c - kappa n|^2. The links have k/2 |c|^2 of it;
+/// these add -n . sum_i pull_i x_i with pull = sum k kappa w, and the sum of all k/2 kappa^2.
 template <class Real>
 struct RestCurves {
   std::vector<Triangle> triangles;   ///< their corners, counted from the part's first particle
@@ -199,9 +199,9 @@ struct ClothPart {
   Real bending_time = 0;  ///< tau of the quadratic form's dashpots (bending_dashpots.h) [s]
   TriangleCurvatures<Real> curvatures;  ///< of such a mesh, if it has these
   RestCurves<Real> rest_curves;         ///< of such a mesh, if it is curved at rest
-  bool bends_by_links = false;          ///< such a mesh, though it may have none
-  bool curved_at_rest = false;          ///< and then it has rest curves
-  bool rests_by_triangle = false;       ///< each triangle as its `corner_material`, all unbent;
+  bool bends_by_links = false;          ///< such a mesh, even if no link is left
+  bool curved_at_rest = false;          ///< such a mesh; it then has rest curves
+  bool rests_by_triangle = false;       ///< each triangle rests by its `corner_material`, unbent;
                                         ///< the rest positions are where it starts
   std::vector<HeldStrip> held_strips;   ///< that the links are made for
   std::size_t bending_stencils = 0;     ///< or links of the quadratic form; see bending_stencil.h

@@ -54,45 +54,45 @@ inline constexpr double kCrumpledArea = 0.05;
 inline constexpr double kFlatRestAngle = 1e-5;
 
 /// So does a piece of a mesh whose vertices lie this near to a plane, as a fraction of its mean
-/// edge [1], and these many roundings of its coordinates. Larger: slight curves at rest are lost.
+/// edge [1], plus this many roundings of its coordinates. Larger: slight curves at rest are lost.
 /// Smaller: rounding of a file's vertices makes a flat mesh a curved one, which takes longer.
 inline constexpr double kFlatRest = 1e-3, kRoundingsOfFlat = 4;
 
-/// Error of a slope across an edge of a mesh, over what a quadratic field rises by up to the next
-/// particle, that is left as it is [1]. Larger: meshes bend too stiffly by up to this. Smaller:
-/// rounded vertices of a regular mesh make each particle bend with half as many more.
+/// Error of a slope across an edge up to which it is not corrected, relative to the rise of a
+/// quadratic field to the next particle [1]. Larger: meshes bend too stiffly by up to this.
+/// Smaller: rounding of a regular mesh's vertices couples each particle to half as many more.
 inline constexpr double kRightSlope = 3e-4;
 
-/// Least eigenvalue with which particles around an edge tell quadratic fields apart; a wide patch
-/// of them has about 0.1 [1]. Larger: more particles have a say in a slope, and bending takes
-/// longer. Smaller: large weights, and more substeps.
+/// Least eigenvalue at which the particles around an edge distinguish quadratic fields; a wide
+/// patch of them has about 0.1 [1]. Larger: slopes use more particles, and bending takes longer.
+/// Smaller: large weights, and more substeps.
 inline constexpr double kTellsApart = 5e-4;
 
-/// Times that the particles around an edge are joined by their neighbours to tell fields apart [1].
-/// Larger: nothing, on meshes that are wide enough. Smaller: slopes at corners are not exact.
+/// Times that neighbours are added to the particles around an edge to distinguish fields [1].
+/// Larger: no difference on wide meshes. Smaller: slopes at corners are not exact.
 inline constexpr int kSlopeRounds = 2;
 
-/// Neighbours of a particle beyond which they have no say in slopes beside it [1]. Larger: fans
-/// take long to build. Smaller: slopes at dense vertices are not exact.
+/// Slopes beside a particle with more neighbours than this do not use them [1]. Larger: fans take
+/// long to build. Smaller: slopes at dense vertices are not exact.
 inline constexpr std::size_t kMostSpokes = 32;
 
-/// Weight of a link of bending, over the lesser of those of its two particles, that is left out
-/// [1]. Larger: what is flat pulls at itself. Smaller: rounded vertices of a regular mesh make each
-/// particle bend with half as many more.
+/// A link of bending is left out below this weight, relative to the smaller diagonal entry of its
+/// two particles [1]. Larger: flat cloth has forces. Smaller: rounding of a regular mesh's vertices
+/// couples each particle to half as many more.
 inline constexpr double kLeastLink = 1e-8;
 
-/// Height of a triangle over an edge, over how far what lies around reaches from the edge's line,
-/// below which it is a needle [1]. Larger: triangles of graded meshes are fitted to their
+/// Height of a triangle over an edge, relative to how far its surroundings reach from the edge's
+/// line, below which it is a needle [1]. Larger: triangles of graded meshes are fitted to their
 /// surroundings. Smaller: needles bend stiffly, and take more substeps.
 inline constexpr double kNeedle = 0.15;
 
-/// Largest weight of a slope, times the distance of the particles that it is taken from, beyond
-/// which these are fitted all alike; 1 to 3 on regular meshes [1]. Larger: edges between oblique
-/// triangles take more substeps. Smaller: slopes are taken from further away.
-inline constexpr double kLoudSlope = 5;
+/// Largest weight of a slope, times the distance of the particles that it uses, beyond which it is
+/// that of a least-squares fit; 1 to 3 on regular meshes [1]. Larger: edges between oblique
+/// triangles take more substeps. Smaller: slopes use particles farther away.
+inline constexpr double kMostSlopeWeight = 5;
 
-/// Triangles around an edge that are unfolded at most [1]. Larger: time where a vertex joins what
-/// no edge joins. Smaller: particles that slopes need are left out.
+/// Triangles around an edge that are unfolded at most [1]. Larger: more time where only a vertex
+/// connects two parts. Smaller: particles that slopes need are left out.
 inline constexpr std::size_t kMostUnfolded = 512;
 
 /// Largest factor of the bending of a mesh's triangle that a strip holds in part [1]. Larger: a

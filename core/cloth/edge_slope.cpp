@@ -142,7 +142,7 @@ Eigen::Vector3d slope_of_squares(const Eigen::Vector2d& p, const Eigen::Vector2d
   return {direction[0] * p[0], direction[0] * p[1] + direction[1] * p[0], direction[1] * p[1]};
 }
 
-/// Mean of what is positive of a quantity that goes evenly from one value to another.
+/// Mean of the positive part of a quantity that changes linearly from one value to the other.
 double mean_positive(double from, double to) {
   const double low = std::min(from, to), high = std::max(from, to);
   if (low >= 0) return 0.5 * (low + high);
@@ -167,8 +167,9 @@ std::vector<ParticleWeight> EdgeSlopes::inside(const EdgeSides& edge, std::size_
   return slope;
 }
 
-/// The mean of the slopes in both triangles, each by its height: what the third corners differ by.
-/// The curvature across drops out where the heights are alike, and a low triangle is not heard.
+/// Mean of the slopes in both triangles, weighted by their heights: the difference of the third
+/// corners. The curvature across cancels where the heights are equal; a low triangle has little
+/// weight.
 std::vector<ParticleWeight> EdgeSlopes::mean_inside(const EdgeSides& edge,
                                                     const Frame& frame) const {
   std::vector<ParticleWeight> slope;
@@ -179,9 +180,9 @@ std::vector<ParticleWeight> EdgeSlopes::mean_inside(const EdgeSides& edge,
   return slope;
 }
 
-/// Fits fields to particles around an edge, and joins neighbours until these tell the fields apart.
+/// Fits fields to particles around an edge, and adds neighbours until these distinguish the fields.
 /// @param value    of the fields at a particle, about 1 nearby
-/// @param members  to begin with; those of the fit then
+/// @param members  to begin with; receives those of the fit
 template <int Fields, class ValueAt>
 FieldFit<Fields> EdgeSlopes::fit_around(Frame& frame, const ValueAt& value,
                                         Members& members) const {
@@ -199,7 +200,7 @@ FieldFit<Fields> EdgeSlopes::fit_around(Frame& frame, const ValueAt& value,
   }
 }
 
-/// Changes a slope, by the least weights, by what fields lack.
+/// Corrects a slope by the least weights that make it right for some fields.
 /// @param value   as above
 /// @param wanted  change of the slopes of the fields
 template <int Fields, class ValueAt>
@@ -223,12 +224,12 @@ std::vector<ParticleWeight> EdgeSlopes::across(std::size_t number) const {
   if (wrong.cwiseAbs().maxCoeff() * frame.height > kRightSlope)
     amend<3>(edge, frame, value, -wrong, slope);
   Members members;
-  double loudest = 0;
+  double largest = 0;
   for (const ParticleWeight& one : slope) {
     members.push_back(one.particle);
-    loudest = std::max(loudest, std::abs(one.weight));
+    largest = std::max(largest, std::abs(one.weight));
   }
-  if (loudest * spread(members, frame) < kLoudSlope) return slope;
+  if (largest * spread(members, frame) < kMostSlopeWeight) return slope;
   return across_best_fit(number, {static_cast<Index>(number)});
 }
 
@@ -265,8 +266,8 @@ double EdgeSlopes::spread(const Members& members, const Frame& frame) const {
   return std::sqrt(square / static_cast<double>(members.size()));
 }
 
-/// How low a triangle is over its edge, compared with how far from the edge's line that lies which
-/// is nearest to it [1].
+/// Height of a triangle over an edge, relative to how far the particles nearest to the edge reach
+/// from its line [1].
 double EdgeSlopes::lowness(std::size_t number, Index triangle) const {
   const EdgeSides& edge = edges_[number];
   Frame frame = frame_of(edge);

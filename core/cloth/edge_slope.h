@@ -28,12 +28,12 @@ void add_weight(Index particle, double weight, std::vector<ParticleWeight>& list
 /// Elsewhere, and on the border, the least change of weights within the triangles' surroundings
 /// makes it so.
 ///
-/// A triangle much lower than what lies around it is a needle. Its own slope, and what the slopes
-/// across its long edges differ by, are what its particles differ by over its height: as loud as it
-/// is low. So the long edges of a needle, and those of needles that share one, have the slopes of
-/// one quadratic field, that of the least squares around them all. By that a needle bends as what
-/// lies around it, and its weights do not grow as it gets lower. An edge whose slope is loud by
-/// itself has that of the least squares too.
+/// A triangle much lower than its surroundings is a needle. Its own slope, and the jump between the
+/// slopes across its long edges, are differences of its particles over its height, so their weights
+/// grow as it gets lower. So the long edges of a needle, and those of needles that share one, have
+/// the slopes of one quadratic field, the least-squares fit around them all. A needle then bends
+/// like its surroundings, and its weights stay bounded. An edge with large weights of its own has
+/// the slope of a least-squares fit too.
 class EdgeSlopes {
  public:
   /// @param x       of the particles of a mesh whose triangles are flat together wherever they
@@ -50,7 +50,7 @@ class EdgeSlopes {
 
   /// Weights that give the slope at the middle of the edge in its plane and at right angles to it,
   /// into its first triangle [1/m]. They are exact for linear fields, and for quadratic ones as far
-  /// as the mesh around the edge tells these apart.
+  /// as the mesh around the edge distinguishes them.
   /// @param edge  number of it
   std::vector<ParticleWeight> across(std::size_t edge) const;
 
@@ -60,7 +60,7 @@ class EdgeSlopes {
   std::vector<ParticleWeight> across_clamped(const EdgeSides& edge,
                                              const std::vector<double>& beyond) const;
 
-  /// Whether particles that may have a say in an edge's slope are held behind a border.
+  /// Whether a particle that an edge's slope may use is held behind a border.
   bool meets_held(const EdgeSides& edge, const std::vector<double>& beyond) const;
 
   /// The slope in one of an edge's triangles, 0 or 1, which is that of a linear field.

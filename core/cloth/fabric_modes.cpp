@@ -1,4 +1,4 @@
-// Frequencies of a strip's modes, and the relaxation times that their decay tells.
+// Frequencies of a strip's modes, and relaxation times from their decay.
 
 #include "core/cloth/fabric_modes.h"
 

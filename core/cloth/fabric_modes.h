@@ -26,8 +26,8 @@ double angular_frequency(const FabricDef& fabric, FabricMode mode, double length
 /// The relaxation time of what a mode deforms [s].
 double relaxation_time(const FabricDef& fabric, FabricMode mode);
 
-/// The relaxation time of a mode whose amplitude falls to 1/e in a time [s], 2 / (omega^2 T), and
-/// the other way about: the same formula.
+/// The relaxation time of a mode whose amplitude falls to 1/e in a time [s], 2 / (omega^2 T), or
+/// the reverse: the formula is its own inverse.
 /// @param omega  angular frequency of the mode [1/s], positive
 double relaxation_of_decay(double omega, double decay_time);
 

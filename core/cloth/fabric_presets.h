@@ -5,7 +5,7 @@
 
 #include "core/cloth/fabric.h"
 
-// Named fabrics, and the rigidity that a bending length tells.
+// Named fabrics, and rigidity from a bending length.
 
 namespace weft {
 

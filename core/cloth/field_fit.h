@@ -44,7 +44,7 @@ class FieldFit {
       solver_.computeDirect(own);
   }
 
-  /// Whether the particles tell all the fields apart.
+  /// Whether the particles distinguish all the fields.
   bool is_determined() const { return solver_.eigenvalues()[0] > kTellsApart; }
 
   /// Weights of the least squares' slope at a point: exact for linear fields, and for the others as

@@ -12,7 +12,7 @@
 namespace weft {
 namespace {
 
-/// What a piece of a mesh is compared with a plane by.
+/// Extent of a piece of a mesh along its normal, and the length of its edges.
 struct PieceShape {
   Vec3d normal = Vec3d::Zero();             ///< sum of its triangles' areas, all on one side [m^2]
   double low = INFINITY, high = -INFINITY;  ///< along the normal [m]

@@ -6,8 +6,7 @@
 
 namespace weft {
 
-/// Whether each piece of a mesh lies in a plane, but for what the vertices of a file are rounded
-/// by.
+/// Whether each piece of a mesh lies in a plane, up to the rounding of its vertices in a file.
 /// @param model  the mesh alone, with its edges
 template <class Real>
 bool lies_flat(const ClothModel<Real>& model);

@@ -23,9 +23,9 @@ struct GridStiffness {
 /// Throws DefinitionError on "fabric.shear" if a structural spring would be negative.
 GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell_v);
 
-/// E of forces/cell_misfit.h, what a cell's springs cost at least where their strains do not fit by
-/// q: E q^2/2 with 1/E = 2/(k_s d^2) + 4 a_u^2/(k_w h_u^2) + 4 a_v^2/(k_f h_v^2) [N m]; 0 if one of
-/// them has no stiffness.
+/// E of forces/cell_misfit.h: a cell's springs whose strains do not fit by q have at least the
+/// energy E q^2/2, with 1/E = 2/(k_s d^2) + 4 a_u^2/(k_w h_u^2) + 4 a_v^2/(k_f h_v^2) [N m]; 0 if
+/// one of them has no stiffness.
 double misfit_stiffness(const GridStiffness& springs, double cell_u, double cell_v);
 
 /// Relaxation times of a grid's springs whose continuum limit damps stretch and shear with those of

@@ -4,7 +4,7 @@
 
 #include "core/definition.h"
 
-// How a cloth is meant to look. Nothing of the physics reads it; viewers are told.
+// How a cloth is meant to look. Only viewers use it, not the physics.
 
 namespace weft {
 

@@ -90,7 +90,7 @@ struct TensorRoot {
 };
 
 /// The largest root of x^3 - c2 x^2 + c1 x - c0, whose roots are real and not negative: Newton's
-/// method from their sum comes to it from above, so that what it has found is a bound at any time.
+/// method starts from their sum and approaches it from above, so that every iterate is a bound.
 double largest_root(double c2, double c1, double c0) {
   double x = c2;
   for (int round = 0; round < 60; ++round) {
@@ -140,7 +140,7 @@ class MassShares {
  public:
   MassShares(const ClothModel<Real>& model, const ClothPart<Real>& part)
       : model_(model), part_(part), shares_(static_cast<std::size_t>(part.membrane.count)) {
-    // To begin with as each corner resists being moved, and none without mass.
+    // First by how much each corner resists being moved; no corner is left without mass.
     const auto& c = part.membrane_tensor;
     const double base = static_cast<double>(c.shear) +
                         kLeastCornerWeight * static_cast<double>(c.warp + c.weft + c.shear);

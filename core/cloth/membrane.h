@@ -39,13 +39,13 @@ MembraneTriangle<Real> membrane_triangle(const Triangle& particles, const RestCo
 template <class Real>
 void bound_membrane(const ClothModel<Real>& model, ClothPart<Real>& part);
 
-/// The longest that a thread of the part is now [1]: 1 at rest, 0 without a membrane.
+/// Length of the most stretched thread of the part [1]: 1 at rest, 0 without a membrane.
 template <class Real>
 double longest_thread(const ClothModel<Real>& model, const ClothPart<Real>& part,
                       const Vec3Array<Real>& x);
 
-/// What the bound of a part grows by when its threads are stretched [1/s^2]: the shear strain goes
-/// with the square of their length. Nothing below kFreeStretch.
+/// Increase of a part's bound when its threads are stretched [1/s^2]: the shear strain grows with
+/// the square of their length. 0 below kFreeStretch.
 double stretched_membrane_omega2(const FrequencyBounds& bounds, double longest_thread);
 
 }  // namespace weft

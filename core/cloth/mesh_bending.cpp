@@ -49,7 +49,7 @@ struct FlatTriangle {
     assert(area > 0);
   }
 
-  /// The way out across the edge opposite to a corner, as long as that edge.
+  /// Outward normal of the edge opposite to a corner, as long as that edge.
   Eigen::Vector2d outward(std::size_t k) const {
     const Eigen::Vector2d edge = corner[(k + 2) % 3] - corner[(k + 1) % 3];
     const Eigen::Vector2d across(edge[1], -edge[0]);
@@ -149,7 +149,7 @@ class BendingMatrix {
  public:
   explicit BendingMatrix(std::size_t particles) : rows_(particles), diagonal_(particles, 0) {}
 
-  /// Adds what a triangle resists with.
+  /// Adds the bending stiffness of a triangle.
   /// @param rigidity  of its curvatures, times its area [N m^3]
   void add(const std::vector<CurvatureWeight>& curvature, const Eigen::Vector3d& rigidity) {
     for (std::size_t a = 0; a < curvature.size(); ++a) {
@@ -197,8 +197,8 @@ void append(const std::vector<CurvatureWeight>& curvature, const Eigen::Vector3d
   list.stiffness.push_back(stiffness.cast<Real>());
 }
 
-/// Takes off a triangle's curvatures what they are along itself at rest.
-/// @returns what they are along its normal [1/m]
+/// Subtracts from a triangle's curvatures their tangential part at rest.
+/// @returns their part along its normal [1/m]
 Eigen::Vector3d lift_off(const Triangle& t, const Vec3Array<double>& x,
                          std::vector<CurvatureWeight>& curvature) {
   const auto at = [&](Index i) -> const Vec3d& { return x[static_cast<std::size_t>(i)]; };

@@ -81,7 +81,7 @@ struct UvHoles {
   bool any() const { return std::find(hole.begin(), hole.end(), true) != hole.end(); }
 };
 
-/// Where a corner of a triangle stands in it.
+/// Number of a corner in its triangle, 0 to 2.
 std::size_t corner_of(const Triangle& triangle, Index particle) {
   return static_cast<std::size_t>(std::find(triangle.begin(), triangle.end(), particle) -
                                   triangle.begin());
@@ -116,8 +116,8 @@ void continue_beyond(const EdgeSides& edge, std::size_t side, const TriangleMesh
   put(edge.opposite[side], start + foot * line + height * out);
 }
 
-/// Gives holes the places that continue those beside them. The ones that no way leads to stay as
-/// they are.
+/// Gives holes the places that continue their neighbours. Holes that no others are connected to
+/// stay.
 /// @returns whether none is left
 bool fill(const TriangleMesh& mesh, UvHoles& uv) {
   const std::vector<EdgeSides> edges = sides_of(mesh.triangles);

@@ -5,7 +5,7 @@
 
 #include "core/cloth/cloth_def.h"
 
-// Where a mesh lies in its fabric, as the (u, v) of its file say.
+// Places of a mesh in its fabric, from the (u, v) of its file.
 
 namespace weft {
 
@@ -18,7 +18,7 @@ struct MeshMaterial {
 /// Throws DefinitionError if there are not as many (u, v) as vertices, or as triangles.
 void refuse_other_uv(const ClothMesh& cloth);
 
-/// Whether a vertex has several (u, v). The mesh must be valid, and none refused above.
+/// Whether a vertex has several (u, v). The mesh must be valid, and refuse_other_uv() accept it.
 bool has_seams(const ClothMesh& cloth);
 
 /// Places in the fabric of a mesh that is at rest as it lies: the (u, v), scaled equally in both
@@ -27,7 +27,7 @@ bool has_seams(const ClothMesh& cloth);
 /// along the axis that the mesh faces most, with v downwards.
 MeshMaterial material_of(const ClothMesh& cloth);
 
-/// The same mesh, laid flat as its (u, v) say; it must have no seams. Throws DefinitionError if a
+/// The same mesh, laid flat by its (u, v); it must have no seams. Throws DefinitionError if a
 /// triangle has no area there or is turned over.
 ClothDef laid_out(const ClothDef& def);
 

@@ -5,7 +5,7 @@
 
 #include "core/types.h"
 
-// What hangs together by edges.
+// Pieces that edges connect.
 
 namespace weft {
 

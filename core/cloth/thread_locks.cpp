@@ -13,8 +13,8 @@
 namespace weft {
 namespace {
 
-/// Of each edge along a thread the area that it stands for: of the triangles beside it, because
-/// each cell has one at each of its sides. By its ends.
+/// Area that each edge along a thread stands for, by its ends: that of the triangles beside it,
+/// because each cell has one at each of its sides.
 template <class Real>
 std::map<std::pair<Index, Index>, double> areas_of_threads(const ClothModel<Real>& model) {
   std::map<std::pair<Index, Index>, double> areas;

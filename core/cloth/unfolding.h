@@ -6,7 +6,7 @@
 #include "core/cloth/edge_sides.h"
 #include "core/types.h"
 
-// What lies around an edge of a mesh that is not flat as a whole, laid flat.
+// Surroundings of an edge, laid flat, in a mesh that is not flat as a whole.
 
 namespace weft {
 
@@ -30,9 +30,9 @@ BesideEdge beside(const FlatShapes& shapes, const EdgeSides& edge, std::size_t s
 double length_of(const FlatShapes& shapes, const EdgeSides& edge);
 
 /// Lays the triangles around an edge into its plane, each beside one that lies there already and
-/// with its own shape, those nearest in number of steps first. What can be developed keeps all
-/// lengths by that. Elsewhere the places differ with the way that leads there, by the cube of the
-/// distance, and the shortest way counts.
+/// with its own shape, those nearest in number of steps first. A developable mesh keeps all its
+/// lengths. Elsewhere a place depends on the path of triangles to it, by the cube of the distance,
+/// and the shortest path counts.
 class Unfolding {
  public:
   /// Lays out the edge, along the first axis with its middle at the origin, and the first of its
@@ -42,8 +42,8 @@ class Unfolding {
   Unfolding(const EdgeSides& edge, const FlatShapes& shapes, const std::vector<EdgeSides>& edges,
             const std::vector<std::array<Index, 3>>& of);
 
-  /// Lays out more triangles until these particles have a place, and removes those that no way of
-  /// at most kMostUnfolded triangles leads to.
+  /// Lays out more triangles until these particles have a place, and removes those that have none
+  /// after kMostUnfolded triangles.
   void lay_out(std::vector<Index>& particles);
 
   /// Of a particle [m]; null if it was not laid out.

@@ -98,9 +98,9 @@ bool has_numbers(std::string_view text, std::size_t at) {
   return at < text.size() && text[at] == 'v';
 }
 
-/// The text of an OBJ as assimp reads it right: numbers have a digit before their point, and no
-/// line goes on after a backslash. It leaves out a vertex `v 0 1 .5` without a word, and all faces
-/// name others then.
+/// The text of an OBJ in a form that assimp reads correctly: numbers have a digit before their
+/// point, and no line continues after a backslash. Assimp silently drops a vertex `v 0 1 .5`, and
+/// all faces then refer to other vertices.
 std::string plain_obj(std::string_view text, const std::string& name) {
   std::string plain;
   plain.reserve(text.size() + text.size() / 16);
@@ -150,7 +150,7 @@ class Welder {
     any_has_uv_ = any_has_uv_ || has_uv;
   }
 
-  /// A face without uv has all three in one place. Its vertices have those of the first other face.
+  /// A face without uv has all its corners in one place; its vertices have the uv of another face.
   void finish() {
     if (!any_has_uv_) {
       file_.uv.clear();
