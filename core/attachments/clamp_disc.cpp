@@ -36,7 +36,7 @@ bool ClampDisc::holds(const std::array<double, 2>& place) const {
 template <class Real>
 std::optional<ClampDisc> clamp_of_disc(const ClothModel<Real>& model, Index centre, double radius) {
   const ClothPart<Real>& part = part_of_particle(model, centre);
-  // Cloth that does not bend yet may do so live.
+  // A grid without rigidity gets a clamp too: its fabric may change while it runs.
   if (part.cells.rows == 0 || part.hinges.count > 0) return std::nullopt;
   const ClampDisc disc{static_cast<std::size_t>(&part - model.parts.data()),
                        place_of(model, centre),

@@ -33,7 +33,7 @@ struct ClampDisc {
 };
 
 /// The clamp of a disc around a particle: of a grid that bends by the quadratic form, if its radius
-/// is kLeastClampedDisc cells or more. A smaller one holds the particles within alone.
+/// is kLeastClampedDisc cells or more. A smaller one holds only the particles within it.
 template <class Real>
 std::optional<ClampDisc> clamp_of_disc(const ClothModel<Real>& model, Index centre, double radius);
 

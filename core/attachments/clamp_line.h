@@ -45,7 +45,7 @@ struct ClampLine {
   bool is_within(const ClampLine& other) const;
 };
 
-/// A clamp across a mesh, as that sees it.
+/// The strip that a clamp across a mesh holds.
 HeldStrip held_strip(const ClampLine& clamp);
 
 /// What clamps the cloths of a model.
@@ -67,7 +67,7 @@ template <class Real>
 std::vector<std::size_t> set_clamps(const Clamps& clamps, ClothModel<Real>& model);
 
 /// Multiplies a part's hinges along the clamped lines by the factors.
-/// @param model  with the hinges of this part as woven
+/// @param model  with the hinges of this part as built
 template <class Real>
 void stiffen_hinges(std::size_t part, ClothModel<Real>& model);
 

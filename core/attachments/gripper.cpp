@@ -154,7 +154,7 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     const ColliderState &left = colliders[gripper.jaw[0]], &right = colliders[gripper.jaw[1]];
     const Vec3d axis = left.pose.rotation * (gripper.def.orientation * Vec3d::UnitX());
     const Vec3d between = right.pose.position - left.pose.position;
-    // A jaw that was held back holds the other one back by half.
+    // A jaw that was held back holds the middle back by half as much.
     gripper.pose.position = (left.pose.position + right.pose.position) / 2;
     gripper.pose.rotation = left.pose.rotation;
     if ((gripper.pose.position - gripper.target.position).norm() < kArrivalDistance)

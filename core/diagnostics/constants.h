@@ -48,8 +48,8 @@ inline constexpr int kElasticaSteps = 500, kElasticaHalvings = 36;
 /// not measured. Smaller: runs that do not approach each other get an error all the same.
 inline constexpr double kLeastOrder = 0.5;
 
-/// An error is told until noise exceeds both this fraction of it and this multiple of the noise at
-/// the start [1]. Larger: errors are told that are partly chance. Smaller: figures end while they
+/// An error is reported until noise exceeds both this fraction of it and this multiple of the noise
+/// at the start [1]. Larger: reported errors are partly chance. Smaller: figures end while they
 /// still hold.
 inline constexpr double kNoiseFraction = 1.0 / 3, kNoiseGrowth = 10;
 
@@ -59,7 +59,7 @@ inline constexpr double kNoiseFraction = 1.0 / 3, kNoiseGrowth = 10;
 /// over. Smaller: what rounding leaves counts.
 inline constexpr double kSmallestSwing = 0.02;
 
-/// Turning points that tell a decay [1]. Larger: it is told later. Smaller: told by few.
+/// Turning points from which a decay is computed [1]. Larger: later. Smaller: from too few.
 inline constexpr std::size_t kFewestTurns = 4;
 
 }  // namespace weft

@@ -23,7 +23,7 @@ struct ErrorEstimate {
 /// No order below kLeastOrder counts: such runs do not approach each other.
 ErrorEstimate extrapolate(const RunDifferences& differences);
 
-/// What is known in the end.
+/// The error of a quantity over a run.
 struct ErrorFigure {
   bool measured = false;
   ErrorEstimate estimate;  ///< the largest error from the start to `until`

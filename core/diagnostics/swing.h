@@ -3,7 +3,7 @@
 #include <array>
 #include <cstddef>
 
-// The free swing of a strip, of which the decay test reads the fabric's damping.
+// The free swing of a strip, from which the decay test reads the fabric's damping.
 
 namespace weft {
 
@@ -22,7 +22,7 @@ class Swing {
   /// Half the distance between the last two turning points [m]; 0 before there are two.
   double amplitude() const { return count_ > 1 ? half_swing(count_ - 2) : 0; }
 
-  /// What the turning points tell: between each two of them lies half a period. Those below
+  /// Decay by the turning points: between each two of them lies half a period. Those below
   /// kSmallestSwing of the largest are left out, and so is the first, at which the strip may still
   /// have been held. All 0 while there are fewer than kFewestTurns.
   struct Decay {

@@ -5,14 +5,14 @@
 #include "core/cloth/cloth_model.h"
 #include "core/types.h"
 
-// What the springs of a grid's cells cost only because they are chords, and its removal.
+// Energy that a grid's springs have only because they are chords, and its removal.
 //
 // The cloth's plane has three strains, and the springs of a cell have four: s_u and s_v of its
-// sides, the means of two each, and s_1 and s_2 of its diagonals. Where the cloth is strained alike
-// they fit: q = s_1 + s_2 - 2 (a_u s_u + a_v s_v) = 0 with a_u = h_u^2/d^2 and a_v = h_v^2/d^2.
-// Where it bends aslant they cannot, because chords are shorter than arcs. With strains (l^2/L^2 -
-// 1)/2, q is -w, w = |t|^2/(2 d^2), where t = x_00 - x_01 - x_10 + x_11 is the cell's twist: the
-// squares of a quadrangle's diagonals are less than those of its sides by |t|^2.
+// sides, the means of two each, and s_1 and s_2 of its diagonals. Where the strain is uniform they
+// fit: q = s_1 + s_2 - 2 (a_u s_u + a_v s_v) = 0 with a_u = h_u^2/d^2 and a_v = h_v^2/d^2. Where
+// cloth bends obliquely they cannot: chords are shorter than arcs. With strains (l^2/L^2 - 1)/2, q
+// is -w, w = |t|^2/(2 d^2), where t = x_00 - x_01 - x_10 + x_11 is the cell's twist: the squares of
+// a quadrangle's diagonals are less than those of its sides by |t|^2.
 //
 // Springs with this misfit have at least an energy whose slope over w is, as a series,
 //
@@ -23,21 +23,20 @@
 // least is where all pull alike, K e = -lambda c (1 + e) with elongations e, so that the slope is
 // lambda, with w = sum c (1 - (1 + lambda c/K)^-2)/2. In a fold of radius R at 45 degrees that is
 // h^4/(256 R^2 B (1/G + ...)) times the energy of bending, 3 times in a silk fold of its bending
-// length with cells of 7.5 mm. It is taken off again, so that folds cost their bending alone in all
-// directions:
+// length with cells of 7.5 mm. It is subtracted, so that folds have the energy of their bending
+// alone in all directions:
 //
 //     U = -E f^2 integral of p dw,  f = 1 - (w/w_1)^4 up to w_1 = 0.8, and 0 beyond.
 //
-// A fold whose radius is 1.4 cells has w = 1/8. Where cloth is crumpled the springs keep all that
-// they have, which undoes its tucks. The series is off by at most 1/200 at w = 0.3; 255/256 of it
-// is taken, so that springs with U never have less than no energy. Homogeneous strains have no
-// twist, and U is of its fourth order, so that moduli, waves and stability bounds stay what they
-// are.
+// A fold whose radius is 1.4 cells has w = 1/8. Where cloth is crumpled the springs keep all their
+// energy, which opens its tucks. The series is off by at most 1/200 at w = 0.3; 255/256 of it is
+// subtracted, so that the energy of springs with U is never negative. Homogeneous strains have no
+// twist, and U is of its fourth order, so that moduli, waves and stability bounds do not change.
 
 namespace weft {
 
 inline constexpr double kMisfitEnd = 0.8;           ///< w_1
-inline constexpr double kMisfitPart = 255.0 / 256;  ///< of E that is taken off
+inline constexpr double kMisfitPart = 255.0 / 256;  ///< of E that is subtracted
 /// 1/w_1^4, by which f falls.
 inline constexpr double kMisfitFall = 1 / (kMisfitEnd * kMisfitEnd * kMisfitEnd * kMisfitEnd);
 
@@ -81,7 +80,7 @@ struct MisfitLaw {
   static double square(Real length) { return static_cast<double>(length) * length; }
 };
 
-/// By how much the stiffness of a cell's twist falls, -2 dU/d|t|^2 [N/m].
+/// Decrease of the stiffness of a cell's twist, -2 dU/d|t|^2 [N/m].
 /// @param squared  |t|^2 [m^2]
 template <class Real>
 Real misfit_softening(const MisfitLaw<Real>& law, Real squared) {

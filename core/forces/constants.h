@@ -63,7 +63,7 @@ inline constexpr double kSameDamping = 1e-5;
 
 /// Minimum size of a band of rows [particles, rows]: on smaller bands, threads that synchronise at
 /// every substep and the two rows that a band recomputes cost more than they save. Larger: fewer
-/// threads share a middling grid.
+/// threads share a medium grid.
 inline constexpr std::ptrdiff_t kBandParticles = 2048, kBandRows = 16;
 
 /// Bands of a grid. Larger: more threads take part. Smaller: fewer rows are computed twice.

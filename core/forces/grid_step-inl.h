@@ -51,7 +51,7 @@ struct ForceLines {
   Real* bent;                             ///< bending stencils centred there, per component
   Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
   const Real* twist;                      ///< stiffness of the cells' twist
-  Real* softened;                         ///< the same where a misfit is taken off, else null
+  Real* softened;                         ///< the same where a misfit is subtracted, else null
   const Real *bend_u, *bend_v;            ///< of the other bending stencils
   std::ptrdiff_t step;                    ///< from component to component
 

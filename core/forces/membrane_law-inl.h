@@ -78,7 +78,7 @@ struct Strained {
             hn::Mul(law.shear_time, fused_dot(tag, w_v, rate_u, fused_dot(tag, w_u, rate_v)))};
   }
 
-  /// What corners 1 and 2 pull with at these strains: minus their forces; the formulas of
+  /// Pulls of corners 1 and 2 at these strains, which are minus their forces; the formulas of
   /// membrane.h.
   HWY_INLINE CornerDifferences<V> pulls(D tag, const MembraneLaw<D>& law,
                                         const TriangleShape<V>& shape,

@@ -84,7 +84,7 @@ struct PairLanes {
   }
 };
 
-/// Adds what bending pulls with between the corners of a pair.
+/// Adds the pulls of bending between the corners of a pair.
 /// @param link  weights of the six links, of the first lane
 /// @param x     of corners 1, 2, 3 from corner 0
 template <class D, class Real, class V = hn::Vec<D>>
@@ -116,7 +116,7 @@ struct PairPlace {
   }
 };
 
-/// Stores in the ring what a group of pairs of triangles pulls with at its corners.
+/// Stores in the ring the pulls of a group of pairs of triangles at their corners.
 /// @param x,v  of the block's first particle
 template <bool MeetsLast, bool Remembered, class Real>
 HWY_INLINE void pull_pairs(const MeshView<Real>& mesh, const PairPlace<Real>& at,

@@ -21,10 +21,9 @@ namespace weft {
 template <class Real>
 class MeshPass {
  public:
-  /// Lists the neighbours. A part with springs that are not damped in proportion to stiffness, with
-  /// more than kMostSpringsAtParticle springs or pairs of triangles at a particle, or with
-  /// neighbours more than some thousand particles apart does not fit and keeps the element-wise
-  /// form.
+  /// Lists the neighbours. A part does not fit, and keeps the element-wise form, if its springs are
+  /// not damped in proportion to stiffness, if a particle has more than kMostSpringsAtParticle
+  /// springs or pairs of triangles, or if neighbours are some thousand particles apart.
   void prepare(const ClothModel<Real>& model, const ClothPart<Real>& part);
 
   bool fits() const { return view_.count > 0; }
@@ -35,9 +34,9 @@ class MeshPass {
 
   /// Kicks the part's range of `v` by the forces, without a list of them.
   /// @param particles   from the model's first particle on
-  /// @param since_last  time since the last kick [s], if `x` was then that much younger: triangles
-  ///                    take the rates of their strains from their differences, which are those of
-  ///                    the velocities of the drift between; 0 if they shall take them from `v`
+  /// @param since_last  time since the last kick [s], if `x` has drifted for it: the rates of the
+  ///                    triangles' strains are then their differences since that kick, which match
+  ///                    the velocities of the drift; 0: the rates follow from `v`
   void kick(const KickLaw<Real>& law, const KickedParticles<Real>& particles,
             const Vec3Array<Real>& x, Vec3Array<Real>& v, Real since_last);
 

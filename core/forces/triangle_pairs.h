@@ -13,7 +13,7 @@ namespace weft {
 
 /// Two triangles with a common edge, (x0, x1, x2) and (x0, x1, x3): their four corners are read and
 /// pulled once, where single triangles have six. A triangle that is left over has x3 = x0 and a
-/// second triangle without gradients, which pulls at nothing.
+/// second triangle without gradients, which has no force.
 template <class Real>
 struct TrianglePair {
   std::array<Index, 4> x{};

@@ -10,8 +10,7 @@
 #include "core/profile.h"
 #include "core/solver/held_forces.h"
 
-// Dashpots of quadratic bending for solvers that do not have them, and for meshes that are too
-// fine.
+// Dashpots of quadratic bending, which act between ticks.
 
 namespace weft {
 
@@ -54,7 +53,7 @@ class BendingDashpots {
     std::size_t number = 0;
     std::vector<std::size_t> begin;  ///< of each one's particles, and the last one's end
     std::vector<Index> particles;
-    std::vector<Real> weights;    ///< of each particle; 0 where it tells but the normal
+    std::vector<Real> weights;    ///< of each particle; 0 if it only defines the normal
     std::vector<Real> viscosity;  ///< tau k of each stencil
     /// Places in each stencil's list: the normal is that of the lines from the first to the second
     /// and from the third to the fourth.

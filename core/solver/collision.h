@@ -17,7 +17,7 @@ namespace weft {
 
 /// Contact and moving pins, as a solver calls them. Of the two contact models at most one is set:
 /// the certified one with `objects`, `guard` or both, or `seed`. Moving pins are included because
-/// they too act between kick and drift, and the meter because it looks on between them.
+/// they too act between kick and drift, and the meter because it reads velocities between them.
 template <class Real>
 struct Collision {
   Contact<Real>* objects = nullptr;
@@ -57,7 +57,7 @@ struct Collision {
     if (guard) guard->certify(state, dt, profile);
     if (objects &&
         !objects->move_objects(state, dt, guard && guard->counts().truncated > truncated)) {
-      assert(guard && "only what it truncates makes objects stand");
+      assert(guard && "objects stop only where the guard truncates");
       guard->stand_still();
     }
   }

@@ -27,7 +27,7 @@ struct NextCalm {
 };
 
 /// Steps without calls of contact while no particle can meet anything: all stay near straight paths
-/// that the guard of the cloths knows to be clear (CalmPaths), and none moves as far as the nearest
+/// that the guard has found to be clear (CalmPaths), and no particle moves as far as the nearest
 /// object. Leaves the same state as contact would, bit for bit.
 /// @param substeps  of the tick
 /// @param s         first substep, before its kick; advanced to the first that is not done

@@ -13,7 +13,7 @@
 namespace weft {
 namespace {
 
-/// Copies the elements of a range that `wanted` says, and returns their range in `to`.
+/// Copies the elements of a range that are `wanted`, and returns their range in `to`.
 template <class Element, class Wanted>
 IndexRange take(const std::vector<Element>& from, const IndexRange& range, const Wanted& wanted,
                 std::vector<Element>& to) {

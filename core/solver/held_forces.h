@@ -8,7 +8,7 @@
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_model.h"
 
-// What fixed particles are pulled by during a tick, for those who ask what pins hold.
+// Impulses on fixed particles during a tick, from which the forces of pins follow.
 
 namespace weft {
 
@@ -21,7 +21,7 @@ struct Surroundings;
 template <class Real>
 class HeldForces {
  public:
-  /// Says that the model has changed.
+  /// Call when the model has changed.
   void forget() { stale_ = true; }
 
   /// Call at each start of a tick. Allocates only where more is held than ever before.
@@ -80,7 +80,7 @@ class HeldForces {
   std::vector<Index> held_, found_;  ///< fixed particles, in the order of their pins
   std::vector<Index> place_;         ///< of each particle among them; kNone: it is free
   std::vector<Vec3d> impulse_, kept_;
-  ClothModel<Real> near_;  ///< springs, membrane, hinges and triangles with a fixed particle
+  ClothModel<Real> near_;  ///< the elements that have a fixed particle
   Stencils bending_;
   Vec3Array<Real> force_;  ///< scratch; only those of fixed particles are read
 };

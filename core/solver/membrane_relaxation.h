@@ -28,8 +28,8 @@ std::array<StrainGradient<Real>, 3> strain_gradients(const MembraneTriangle<Real
 
 /// XPBD of the three strains together, which the tensor couples: the change d of the multipliers
 /// solves (K W + 1) d = K e - lambda, with K the tensor times the triangle's area over `softness`
-/// and W = J M^-1 J^T. With K on the left, strains that the fabric does not resist need no
-/// compliance without bounds.
+/// and W = J M^-1 J^T. With K on the left, strains that the fabric does not resist need no infinite
+/// compliance.
 /// @param softness      compliance over dt^2 [1/s^2]
 /// @param inverse_mass  of the corners [1/kg]
 /// @param e             present strains

@@ -22,7 +22,7 @@ struct MeteredKick {
   double seconds = 0;  ///< for which the forces act: half a substep at the ends of a tick
 };
 
-/// Forces that a kick held beside the cloth's own, and what its dashpots saw.
+/// Forces of a kick besides the cloth's own, and what its dashpots saw.
 template <class Real>
 struct MeteredForces {
   const Surroundings<Real>* around = nullptr;
@@ -38,7 +38,7 @@ struct MeteredForces {
 /// all causes is then exactly the change of the kinetic energy. The cloth's elasticity and gravity
 /// are left out: their energies are functions of the state.
 ///
-/// It only looks: what it is shown does not change by a bit. All sums are in double.
+/// It only reads: no result changes by a bit. All sums are in double.
 template <class Real>
 class WorkMeter {
  public:
@@ -69,7 +69,7 @@ class WorkMeter {
   void keep() { kept_ = now_; }
   void take_back() { now_ = kept_; }
 
-  /// For solvers without kicks, which know their own flows.
+  /// For solvers without kicks, which compute their own flows.
   void add(const EnergyFlows& flows) { now_.flows += flows; }
   /// After a substep in which drag alone took energy from these particles: each kept so large a
   /// part of the velocity of `begin`.

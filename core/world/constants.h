@@ -56,7 +56,7 @@ inline constexpr double kShortestForVerlet = 1.0 / 120000;
 /// exceeds what a finer step gains. Smaller: errors have no reference to be checked against.
 inline constexpr int kMostRefinement = 16;
 
-// Repetitions that tell a run's error.
+// Repetitions that measure a run's error.
 
 /// Noise in the starting positions of one repetition [m rms]. Larger: smooth runs appear chaotic.
 /// Smaller: rounding in float hides it at a metre from the origin.
@@ -95,7 +95,7 @@ inline constexpr int kSleepTicksAhead = 2;
 inline constexpr double kMostHangingStrain = 0.15;
 
 /// Share of a modulus below which XPBD counts as softer than asked for [1]. Larger: warnings for
-/// what no eye sees. Smaller: cloth is a tenth too soft and nothing is said.
+/// invisible differences. Smaller: cloth is a tenth too soft without a warning.
 inline constexpr double kLeastModulusShare = 0.95;
 
 /// Side of the grid on which its moduli are computed [cells]. Larger: it takes longer. Smaller: the

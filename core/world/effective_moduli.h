@@ -28,16 +28,16 @@ struct EffectiveModuli {
   double least() const;
 };
 
-/// What XPBD makes of the cloths of a world at its start; none with another solver or with rigid
+/// Moduli of the cloths of a world at its start under XPBD; none with another solver or with rigid
 /// springs. A substep begins with multipliers of zero, and each constraint is relaxed while those
 /// before it already pull, so that at rest its force is less than its strain would give. Where the
 /// strain is uniform that is so everywhere alike: the sweeps of one substep over a strained cloth
 /// at rest move nothing inside, and their multipliers are the stress that XPBD has for that strain.
 /// A grid is computed on a square of its cells, a mesh on itself.
 ///
-/// Of sheets that hang from a side the modulus is told to 3 % on grids; on meshes to 6 % where half
-/// is left of it, and to a sixth where a sixth is. Shear is told to 8 % of what a sheet has that
-/// sags between two sides; beside these it is softer still.
+/// For sheets that hang from a side the modulus is right to 3 % on grids; on meshes to 6 % where
+/// half of it is left, and to a sixth where a sixth is. Shear is right to 8 % for a sheet that sags
+/// between two sides; beside these sides the sheet is softer still.
 ///
 /// Not known: direct springs, springs along the edges of a mesh, a mesh that is not flat in its own
 /// uv, and what would take more than kMostProbedSprings.

@@ -10,7 +10,7 @@
 
 namespace weft {
 
-/// Difference from what was asked for that is told [1].
+/// Difference from what was asked for that is reported [1].
 inline constexpr double kToldDifference = 0.01;
 
 /// A pin that holds more or less of the fabric than was asked for, because it holds whole

@@ -23,12 +23,12 @@ struct QuantityError {
 std::string what_forbids_rows(const WorldDef& def);
 
 /// The same scene with 2 (rows - 1) + 1 rows of each cloth, and as many columns.
-/// @param def  that nothing forbids rows
+/// @param def  for which what_forbids_rows() is empty
 WorldDef with_twice_the_rows(WorldDef def);
 
 /// Repeats a run with 2 and 4 times the substeps, with noise in the starting positions, and with
-/// twice the rows and columns, tick by tick beside the run, which it does not change. What the mesh
-/// changes is told as the difference between the two meshes, because nothing tells its order.
+/// twice the rows and columns, tick by tick beside the run, which it does not change. The error of
+/// the mesh is the difference between the two meshes, because its order is not known.
 template <class Real>
 class RunError {
  public:
@@ -53,7 +53,7 @@ class RunError {
   /// Why the error in space is not measured; empty: it is.
   const std::string& space_forbidden() const { return space_forbidden_; }
 
-  /// Whether a repetition stopped the cloth, from when on nothing is compared.
+  /// Whether the run or a repetition has stopped; nothing is compared from then on.
   bool broke_off() const { return broke_off_; }
 
  private:

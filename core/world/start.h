@@ -18,7 +18,7 @@ struct StartDef {
 };
 
 /// Particles may start at most this fast [m/s]. Larger: a start may look like a blow-up to the
-/// check after its first substep. Smaller: thrown cloth cannot be told.
+/// check after its first substep. Smaller: thrown cloth is refused.
 inline constexpr double kFastestStart = 100;
 
 /// Throws DefinitionError on fields "start.x" and "start.v" unless there is one position, and no

@@ -27,7 +27,7 @@ class Verdict {
   double deepest = 0;                 ///< penetration of an object in judged ticks [m]
   double smallest_gap = std::numeric_limits<double>::infinity();  ///< of near features [m]
   double largest_strain = 0;
-  double lost_motion = 0;  ///< truncated by wanted motion, of the guard
+  double lost_motion = 0;  ///< truncated motion over wanted motion, of the guard
   /// Largest energy in excess of the start, recorded work and disturbances, as a fraction of the
   /// energy in play: the largest mechanical energy plus all work.
   double energy_excess = 0;

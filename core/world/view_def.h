@@ -2,7 +2,7 @@
 
 #include "core/definition.h"
 
-// Where a scene is best looked at from. Nothing of the physics reads it; viewers are told.
+// Where a scene is best looked at from. Only viewers use it, not the physics.
 
 namespace weft {
 

@@ -87,7 +87,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   refuse_too_stiff();  // clamps stiffen
 }
 
-/// Builds what decides on meeting, rest and runaway energy, for the present model.
+/// Builds contact, sleep and the account of energy for the present model.
 template <class Real>
 void World<Real>::build_contact() {
   contact_.objects = make_contact(def_, model_, runtime_);

@@ -168,7 +168,7 @@ class World {
   std::unique_ptr<World> fork() const;
 
   /// Takes `factor` times the substeps that it would take, from the coming tick on: for repetitions
-  /// that tell a run's error in time (run_error.h). The hash leaves it out.
+  /// that measure a run's error in time (run_error.h). The hash leaves it out.
   /// @param factor  1 to kMostRefinement
   void refine_substeps(int factor);
 
@@ -197,8 +197,8 @@ class World {
   /// same.
   ComingStarts coming_bad_starts() const;
 
-  /// Switches measuring contacts and forces in each tick; changes no result. What the last tick
-  /// measured is told until the next one ends.
+  /// Switches measuring contacts and forces in each tick; changes no result. `reactions` returns
+  /// what the last tick measured until the next one ends.
   void measure_forces(bool wanted);
   /// Looks one tick ahead, once, if forces are wanted and no tick has measured them since the state
   /// was set: `reactions` then returns those of `coming_reactions`.
@@ -235,11 +235,11 @@ class World {
   const EnvironmentDef& environment() const { return environment_; }
   const ClothModel<Real>& model() const { return model_; }
   const ClothState<Real>& state() const { return state_; }
-  /// Means over the last tick: displacements over its length [m/s]. They tell whether cloth rests;
-  /// velocities at the end of a tick carry the fastest vibration of stiff cloth. Before the first
+  /// Means over the last tick: displacements over its length [m/s]. They show whether cloth rests;
+  /// velocities at the end of a tick include the fastest vibration of stiff cloth. Before the first
   /// tick, and after one that was halted, those of the state.
   Vec3Array<Real> mean_velocities() const;
-  /// For tests that move the cloth; call `accept_state` afterwards.
+  /// For repetitions and tests that move the cloth; call `accept_state` afterwards.
   ClothState<Real>& state() { return state_; }
   /// Accepts the present state as the one to return to.
   void accept_state();

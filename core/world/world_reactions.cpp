@@ -89,7 +89,7 @@ World<Real> World<Real>::copy() const {
   other.solvers_.verlet = {};
   other.solvers_.relaxation = {};
   other.prepare_solver();
-  // It knows the previous substep; its passes point into arrays of their own.
+  // It has the history of the previous substep; its passes point into arrays of their own.
   other.solvers_.implicit = solvers_.implicit;
   if (solver_of(def_) == SolverKind::implicit) other.solvers_.implicit.energy.prepare(other.model_);
   return other;

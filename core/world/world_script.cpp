@@ -9,7 +9,7 @@
 namespace weft {
 namespace {
 
-/// A triangle with the particle as a corner, with all weight on that corner.
+/// The grab of a scene's hand: at a triangle with the held particle, all weight on that corner.
 template <class Real>
 GrabDef hold_of(const ClothModel<Real>& model, const HandDef& hand) {
   GrabDef def;

@@ -15,14 +15,14 @@ std::size_t part_of(const ClothModel<Real>& model, Index particle) {
 
 }  // namespace
 
-/// Tells contact that masses changed.
+/// Passes on to contact that masses changed.
 template <class Real>
 void World<Real>::masses_changed() {
   contact_.objects.invalidate_rows();
   if (contact_.guard) contact_.guard->invalidate_rows();
 }
 
-/// Tells contact that other cloths sleep now.
+/// Passes on to contact which cloths sleep now.
 template <class Real>
 void World<Real>::sleep_changed() {
   contact_.objects.let_rest(state_);

@@ -12,10 +12,10 @@
 
 namespace weft {
 
-/// The linear systems of cloths other than regular grids, element by element,
-/// preconditioned by the inverse of the diagonal blocks. A hinge's matrix is k g g^T with g the
-/// gradient of its angle (Gauss-Newton: the curvature of the angle itself may be indefinite). Rest
-/// curves push without a matrix of their own: that of the links holds most of their energy's.
+/// The linear systems of cloths other than regular grids, element by element, preconditioned by the
+/// inverse of the diagonal blocks. A hinge's matrix is k g g^T with g the gradient of its angle
+/// (Gauss-Newton: the curvature of the angle itself may be indefinite). Rest curves have forces but
+/// no matrix: the links' holds most of the second derivatives of their energy.
 template <class Real>
 class ElementSystem {
  public:

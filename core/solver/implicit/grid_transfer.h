@@ -9,9 +9,9 @@
 
 namespace weft {
 
-/// Transfer from one level of a grid to the next coarser one and back. In both directions every
-/// second line of particles is kept, and the last one: if the number of lines is even, the last
-/// coarse cell is as short as a fine one.
+// Transfer from one level of a grid to the next coarser one and back. In both directions every
+// second line of particles is kept, and the last one: if the number of lines is even, the last
+// coarse cell is as short as a fine one.
 
 /// Number of kept lines out of `count`.
 inline int coarse_count(int count) {

@@ -77,8 +77,8 @@ struct ImplicitWorkspace {
 
   void prepare(const ClothModel<Real>& model);
 
-  /// Says that something changed the velocities after a tick, by the same for the whole substep
-  /// before: the history counts on.
+  /// Call when something has changed the velocities after a tick. Those of the previous substep
+  /// change by as much, so that the history stays valid.
   void take_over(const Vec3Array<Real>& velocities);
 
   /// Makes the coming substep independent of the previous one.

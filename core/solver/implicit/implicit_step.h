@@ -73,7 +73,7 @@ void meter_displacements(Step<Real>& step);
 template <class Real>
 void book_forces(Step<Real>& step);
 
-/// Before the same substep is solved otherwise: takes those of this substep back.
+/// Takes back what this substep has booked, before it is solved in another way.
 template <class Real>
 void take_back_forces(Step<Real>& step);
 
