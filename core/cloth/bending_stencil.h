@@ -49,6 +49,7 @@ struct BendingRow {
 template <class Real>
 BendingRow<Real> bending_row(int k, int count, const std::vector<double>& stiffening) {
   assert(k >= 0 && k < count);
+  assert(stiffening.empty() || stiffening.size() == static_cast<std::size_t>(count));
   const auto inner = [&](int n) {
     if (n <= 0 || n + 1 >= count) return 0.0;
     return stiffening.empty() ? 1.0 : stiffening[static_cast<std::size_t>(n)];

@@ -113,9 +113,11 @@ struct GridCells {
   std::vector<std::array<double, 2>> site_stiffening;
 
   double stiffening_of_row(int r) const {
+    assert(r >= 0 && r < rows);
     return row_stiffening.empty() ? 1 : row_stiffening[static_cast<std::size_t>(r)];
   }
   double stiffening_of_column(int c) const {
+    assert(c >= 0 && c < columns);
     return column_stiffening.empty() ? 1 : column_stiffening[static_cast<std::size_t>(c)];
   }
   /// Factors of the second differences along u and along v that are centred at a site.

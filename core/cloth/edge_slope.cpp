@@ -213,6 +213,7 @@ void EdgeSlopes::amend(const EdgeSides& edge, Frame& frame, const ValueAt& value
 }
 
 std::vector<ParticleWeight> EdgeSlopes::across(std::size_t number) const {
+  assert(number < edges_.size());
   if (needle_of_[number] != kNone)
     return across_best_fit(number, needles_[static_cast<std::size_t>(needle_of_[number])]);
   const EdgeSides& edge = edges_[number];
@@ -305,6 +306,7 @@ void EdgeSlopes::find_needles() {
 }
 
 bool EdgeSlopes::meets_held(const EdgeSides& edge, const std::vector<double>& beyond) const {
+  assert(beyond.size() == x_.size());
   const Members members = nearest(edge);
   return std::any_of(members.begin(), members.end(),
                      [&](Index i) { return beyond[static_cast<std::size_t>(i)] < 0; });

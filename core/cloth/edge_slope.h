@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cassert>
 #include <cstddef>
 #include <vector>
 
@@ -46,7 +47,10 @@ class EdgeSlopes {
   const std::vector<EdgeSides>& edges() const { return edges_; }
 
   /// The edges of a triangle, opposite to each corner.
-  const std::array<Index, 3>& edges_of(std::size_t triangle) const { return of_[triangle]; }
+  const std::array<Index, 3>& edges_of(std::size_t triangle) const {
+    assert(triangle < of_.size());
+    return of_[triangle];
+  }
 
   /// Weights that give the slope at the middle of the edge in its plane and at right angles to it,
   /// into its first triangle [1/m]. They are exact for linear fields, and for quadratic ones as far

@@ -191,11 +191,13 @@ void GridPass<Real>::load_external(const Vec3Array<Real>& force) {
 
 template <class Real>
 void GridPass<Real>::store_positions(Vec3Array<Real>& x) const {
+  assert(fits());
   grid_put_together(view_, view_.motion, view_.pitch(), x.data()->data());
 }
 
 template <class Real>
 void GridPass<Real>::store_velocities(Vec3Array<Real>& v) const {
+  assert(fits());
   grid_put_together(view_, view_.motion + GridView<Real>::kVelocityLine * view_.line, view_.pitch(),
                     v.data()->data());
 }
@@ -293,6 +295,7 @@ double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
 template <class Real>
 double GridPass<Real>::drift(Real dt, bool has_external, const Vec3Array<Real>& v,
                              Vec3Array<Real>& x) {
+  assert(fits());
   assert(x.size() == v.size());
   assert(!has_external || !external_.empty());
   grid_drift(view_, dt, has_external, v.data()->data(), x.data()->data());
@@ -316,6 +319,7 @@ void GridPass<Real>::compute_air_forces(double density) {
 
 template <class Real>
 ElasticEnergy GridPass<Real>::elastic_energy() const {
+  assert(fits());
   return grid_elastic_energy(view_);
 }
 

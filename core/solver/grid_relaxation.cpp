@@ -166,6 +166,7 @@ void GridRelaxation<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt
 
 template <class Real>
 void GridRelaxation<Real>::store_displacements(Vec3Array<Real>& displacement) const {
+  assert(fits());
   std::size_t i = first_;
   for (int r = 0; r < view_.rows; ++r) {
     for (int c = 0; c < view_.columns; ++c, ++i) {

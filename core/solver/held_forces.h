@@ -50,7 +50,10 @@ class HeldForces {
   void take_back() { impulse_ = kept_; }
 
   /// Whether a particle has been fixed since the start of the tick.
-  bool holds(Index particle) const { return place_[static_cast<std::size_t>(particle)] != kNone; }
+  bool holds(Index particle) const {
+    assert(static_cast<std::size_t>(particle) < place_.size() && "begin_tick comes first");
+    return place_[static_cast<std::size_t>(particle)] != kNone;
+  }
   /// What it got so far in this tick [N s].
   const Vec3d& impulse(Index particle) const {
     assert(holds(particle));

@@ -162,6 +162,7 @@ void WorkMeter<Real>::finish(const ClothModel<Real>& model, const ClothState<Rea
 template <class Real>
 void WorkMeter<Real>::dragged(const ClothModel<Real>& model, const IndexRange& particles,
                               double keep, const Vec3Array<Real>& v) {
+  assert(keep >= 0 && keep <= 1 && v.size() == v_.size());
   double sum = 0;
   for (Index k = particles.first; k < particles.end(); ++k) {
     const auto i = static_cast<std::size_t>(k);

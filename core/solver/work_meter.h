@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <cstddef>
 
 #include "core/attachments/grabs.h"
@@ -55,9 +56,15 @@ class WorkMeter {
   /// @param forces  valid until `finish`
   void kicked(const MeteredKick& kick, const MeteredForces<Real>& forces, const Vec3Array<Real>& v);
   /// After hands have pulled.
-  void pulled(const Vec3Array<Real>& v) { v_pulled_ = v_driven_ = v; }
+  void pulled(const Vec3Array<Real>& v) {
+    assert(v.size() == mean_.size());
+    v_pulled_ = v_driven_ = v;
+  }
   /// After moving pins have driven their particles.
-  void driven(const Vec3Array<Real>& v) { v_driven_ = v; }
+  void driven(const Vec3Array<Real>& v) {
+    assert(v.size() == mean_.size());
+    v_driven_ = v;
+  }
   /// After the drift and all that contact does.
   /// @param objects  contact that notes its impulses; may be null
   /// @param cloths   whether cloth meets cloth

@@ -55,7 +55,10 @@ class Sleep {
   /// For each cloth, in the order of the model: 1 if it sleeps.
   const std::vector<char>& asleep() const { return asleep_; }
   /// Index of the first cloth of the island with which a sleeping cloth fell asleep.
-  std::size_t island_of(std::size_t part) const { return island_[part]; }
+  std::size_t island_of(std::size_t part) const {
+    assert(part < island_.size());
+    return island_[part];
+  }
 
   /// Marks a cloth on which something acts in the coming tick: its stillness restarts.
   void disturb(std::size_t part) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cassert>
 #include <vector>
 
 #include "core/solver/implicit/grid_transfer.h"
@@ -22,8 +23,14 @@ class Multigrid {
 
   /// The finest level, for the caller to fill; `coarsen` computes its `inverse` and all coarser
   /// levels.
-  SpringGrid<Real>& finest() { return levels_.front().grid; }
-  const SpringGrid<Real>& finest() const { return levels_.front().grid; }
+  SpringGrid<Real>& finest() {
+    assert(!levels_.empty() && "prepare comes first");
+    return levels_.front().grid;
+  }
+  const SpringGrid<Real>& finest() const {
+    assert(!levels_.empty() && "prepare comes first");
+    return levels_.front().grid;
+  }
   std::size_t level_count() const { return levels_.size(); }
 
   /// Call after the finest level has changed. Pinned particles are heavy on coarser levels.

@@ -27,6 +27,15 @@ HWY_EXPORT(combine_f64);
 HWY_EXPORT(invert_f32);
 HWY_EXPORT(invert_f64);
 
+namespace {
+
+/// Whether vectors of any instruction set end with the numbers.
+[[maybe_unused]] bool is_whole(std::size_t count) {
+  return count % static_cast<std::size_t>(kGridMargin) == 0;
+}
+
+}  // namespace
+
 void multiply(const SpringGrid<float>& grid, const float* p, float* y) {
   HWY_DYNAMIC_DISPATCH(multiply_f32)(grid, p, y);
 }
@@ -47,21 +56,27 @@ void smooth(const SpringGrid<double>& grid, double omega, const double* r, const
   HWY_DYNAMIC_DISPATCH(smooth_f64)(grid, omega, r, y, z);
 }
 double dot(const float* a, const float* b, std::size_t count) {
+  assert(is_whole(count));
   return HWY_DYNAMIC_DISPATCH(dot_f32)(a, b, count);
 }
 double dot(const double* a, const double* b, std::size_t count) {
+  assert(is_whole(count));
   return HWY_DYNAMIC_DISPATCH(dot_f64)(a, b, count);
 }
 void add_scaled(float s, const float* a, float* y, std::size_t count) {
+  assert(is_whole(count));
   HWY_DYNAMIC_DISPATCH(combine_f32)(false, s, a, y, count);
 }
 void add_scaled(double s, const double* a, double* y, std::size_t count) {
+  assert(is_whole(count));
   HWY_DYNAMIC_DISPATCH(combine_f64)(false, s, a, y, count);
 }
 void scale_and_add(float s, const float* a, float* y, std::size_t count) {
+  assert(is_whole(count));
   HWY_DYNAMIC_DISPATCH(combine_f32)(true, s, a, y, count);
 }
 void scale_and_add(double s, const double* a, double* y, std::size_t count) {
+  assert(is_whole(count));
   HWY_DYNAMIC_DISPATCH(combine_f64)(true, s, a, y, count);
 }
 

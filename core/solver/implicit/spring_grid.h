@@ -95,6 +95,7 @@ double dot(const float* a, const float* b, std::size_t count);
 double dot(const double* a, const double* b, std::size_t count);
 
 /// y += s a.
+/// @param count  likewise
 void add_scaled(float s, const float* a, float* y, std::size_t count);
 void add_scaled(double s, const double* a, double* y, std::size_t count);
 
