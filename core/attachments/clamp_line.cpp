@@ -53,13 +53,12 @@ HeldLines held_lines(double width, double slack, int all) {
 }
 
 HeldStrip held_strip(const ClampLine& clamp) {
-  const bool far_side = clamp.side == Side::right || clamp.side == Side::bottom;
-  return {clamp.is_row() ? 1 : 0, far_side, clamp.border};
+  return {axis_across(clamp.side), is_far(clamp.side), clamp.border};
 }
 
 bool ClampLine::is_within(const ClampLine& other) const {
   if (part != other.part || side != other.side) return false;
-  return side == Side::top || side == Side::left ? line < other.line : line > other.line;
+  return is_far(side) ? line > other.line : line < other.line;
 }
 
 namespace {

@@ -12,6 +12,16 @@ namespace weft {
 
 enum class Side : std::uint8_t { top, bottom, left, right };
 
+/// Axis of the fabric across a strip along a side: 0 u, 1 v.
+constexpr int axis_across(Side side) {
+  return side == Side::left || side == Side::right ? 0 : 1;
+}
+
+/// Whether a side is where its axis has its largest coordinate.
+constexpr bool is_far(Side side) {
+  return side == Side::right || side == Side::bottom;
+}
+
 /// Which lines of a grid a strip along one side holds.
 struct HeldLines {
   int lines = 1;          ///< from the side on
@@ -40,7 +50,7 @@ struct ClampLine {
   double stiffening = 1;  ///< see HeldLines
   double border = 0;      ///< coordinate across a mesh [m]; what it leaves free: mesh_bending.h
 
-  bool is_row() const { return side == Side::top || side == Side::bottom; }
+  bool is_row() const { return axis_across(side) == 1; }
   /// Whether a strip along the same side holds this line and more.
   bool is_within(const ClampLine& other) const;
 };

@@ -76,7 +76,7 @@ double held_width(const EdgeStrip& strip, double cell, double low, double high, 
   const HeldLines held = held_lines(strip.width / cell, slack / cell, all);
   const int last = held.lines - 1;
   if (last > 0 && held.lines < all) {
-    const bool far_side = strip.side == Side::right || strip.side == Side::bottom;
+    const bool far_side = is_far(strip.side);
     const int first = static_cast<int>(std::lround((far_side ? high : low) / cell));
     clamp = {part, strip.side, far_side ? first - last : first + last, held.stiffening};
   }
@@ -111,8 +111,8 @@ PinnedParticles particles_of_strip(const ClothModel<Real>& model, const ClothPar
   visit_fields_of_strip(
       strip, [](const FieldInfo& info, auto value) { check_field("pin.", info, value); });
   const MaterialBounds bounds = bounds_of(model, range);
-  const std::size_t axis = strip.side == Side::left || strip.side == Side::right ? 0 : 1;
-  const bool far_side = strip.side == Side::right || strip.side == Side::bottom;
+  const auto axis = static_cast<std::size_t>(axis_across(strip.side));
+  const bool far_side = is_far(strip.side);
   const double slack = kStripSlack * (bounds.high[axis] - bounds.low[axis]);
   PinnedParticles held;
   double width = strip.width;

@@ -9,6 +9,14 @@
 #include "core/error.h"
 
 namespace weft {
+namespace {
+
+auto find(PinId id, Pins& pins) {
+  return std::find_if(pins.list.begin(), pins.list.end(),
+                      [id](const Pin& pin) { return pin.id == id; });
+}
+
+}  // namespace
 
 bool is_fixed(const Pins& pins, Index particle) {
   assert(particle >= 0 && static_cast<std::size_t>(particle) < pins.pin_count.size());
@@ -67,8 +75,7 @@ PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
 template <class Real>
 bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins& pins,
               ClothState<Real>& state) {
-  const auto found = std::find_if(pins.list.begin(), pins.list.end(),
-                                  [id](const Pin& pin) { return pin.id == id; });
+  const auto found = find(id, pins);
   if (found == pins.list.end()) return false;
   validate(move);
   if (found->path) {
@@ -90,8 +97,7 @@ bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins
 
 template <class Real>
 bool stop_pin(PinId id, Pins& pins, ClothState<Real>& state) {
-  const auto found = std::find_if(pins.list.begin(), pins.list.end(),
-                                  [id](const Pin& pin) { return pin.id == id; });
+  const auto found = find(id, pins);
   if (found == pins.list.end()) return false;
   if (!found->path) return true;
   for (const Index i : found->particles) {
@@ -104,8 +110,7 @@ bool stop_pin(PinId id, Pins& pins, ClothState<Real>& state) {
 
 template <class Real>
 bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<Real>& state) {
-  const auto found = std::find_if(pins.list.begin(), pins.list.end(),
-                                  [id](const Pin& pin) { return pin.id == id; });
+  const auto found = find(id, pins);
   if (found == pins.list.end()) return false;
   const std::vector<Index> particles = std::move(found->particles);
   pins.list.erase(found);

@@ -79,8 +79,8 @@ PinExtent disc(const ClothModel<Real>& model, const Pin& pin) {
 template <class Real>
 PinExtent strip(const ClothModel<Real>& model, const Pin& pin, const EdgeStrip& def) {
   const IndexRange& range = part_of_particle(model, pin.centre).particles;
-  const int axis = def.side == Side::left || def.side == Side::right ? 0 : 1;
-  const double sign = def.side == Side::right || def.side == Side::bottom ? -1 : 1;
+  const int axis = axis_across(def.side);
+  const double sign = is_far(def.side) ? -1 : 1;
   const auto inwards = [&](Index i) { return sign * place_of(model, i)[axis]; };
   double border = inwards(range.first);
   for (Index i = range.first; i < range.end(); ++i) border = std::min(border, inwards(i));
