@@ -15,7 +15,8 @@ struct Energies {
   double stretch = 0;
   double bending = 0;
   double gravity = 0;  ///< -sum m g . x
-  double total() const { return kinetic + stretch + bending + gravity; }
+  double mechanical() const { return kinetic + stretch + bending; }
+  double total() const { return mechanical() + gravity; }
 };
 
 /// Energies, and the strain found in the same pass over the elements.

@@ -29,29 +29,27 @@ class EnergyAccount {
 
   /// Whether the result of a tick cannot be explained. NaN counts as unexplained.
   bool is_runaway(const AdvanceResult& tick) const {
-    return !(mechanical(tick.after) <= kRunawayFactor * (booked(tick) + floor_));
+    return !(tick.after.mechanical() <= kRunawayFactor * (booked(tick) + floor_));
   }
 
   /// Energy without a source [J], for reports.
   double unexplained(const AdvanceResult& tick) const {
-    return mechanical(tick.after) - booked(tick);
+    return tick.after.mechanical() - booked(tick);
   }
 
   /// Accounts for an accepted tick.
   /// @param seconds  its length
   void accept(const AdvanceResult& tick, double seconds) {
     assert(seconds > 0);
-    const double now = mechanical(tick.after), have = booked(tick);
+    const double now = tick.after.mechanical(), have = booked(tick);
     credit_ = have > now ? now + (have - now) / (1 + seconds / kCreditSeconds) : have;
   }
 
  private:
-  static double mechanical(const Energies& e) { return e.kinetic + e.stretch + e.bending; }
-
   /// Energy that the cloth may have after the tick. Commands between ticks (a new pin, other
   /// gravity) change the energy at its start, which is therefore the minimum.
   double booked(const AdvanceResult& tick) const {
-    const double start = mechanical(tick.before) > credit_ ? mechanical(tick.before) : credit_;
+    const double had = tick.before.mechanical(), start = had > credit_ ? had : credit_;
     const double fallen = tick.before.gravity - tick.after.gravity;
     return start + (fallen > 0 ? fallen : 0) + (tick.work > 0 ? tick.work : 0);
   }

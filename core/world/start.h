@@ -11,7 +11,7 @@
 namespace weft {
 
 /// State of all particles of all cloths, in their order, at the start and after each reset. The
-/// cloths rest at the shape of their definition all the same: what is given here is strained.
+/// cloths keep the rest shape of their definition, so that they may start strained.
 struct StartDef {
   std::vector<Vec3d> x;  ///< positions, at most kFarthestFromOrigin from the origin [m]
   std::vector<Vec3d> v;  ///< velocities, at most kFastestStart [m/s]; empty: at rest

@@ -42,8 +42,7 @@ void Verdict<Real>::look_at_energy(const World<Real>& world) {
   }
   given_ += report.work + report.brought;
   worked_ += std::abs(report.work) + std::abs(report.brought);
-  at_play_ = std::max(at_play_,
-                      report.energies.kinetic + report.energies.stretch + report.energies.bending);
+  at_play_ = std::max(at_play_, report.energies.mechanical());
   excess_ = std::max(excess_, now - *start_energy_ - given_);
   energy_excess = at_play_ + worked_ > 0 ? excess_ / (at_play_ + worked_) : 0;
 }

@@ -221,7 +221,7 @@ class World {
   std::size_t solver_bytes() const;
 
   /// Boxes of one level of one of the seed's trees around the present state; see debug_trees.h.
-  /// Throws DefinitionError if there is no such tree or level.
+  /// Throws DefinitionError if there is no such tree, and if the level is negative.
   std::vector<Aabb<float>> debug_boxes(const std::string& tree, int level);
   std::vector<std::string> debug_tree_names();
   int debug_tree_levels(const std::string& tree);

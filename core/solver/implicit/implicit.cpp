@@ -30,11 +30,6 @@ void check_history(const ClothState<Real>& state, double dt, double tick,
   work.last_dt = dt;
 }
 
-/// Energy without that of gravity [J].
-double mechanical(const Energies& e) {
-  return e.kinetic + e.stretch + e.bending;
-}
-
 template <class Real>
 EnergyReading energies_at(const Step<Real>& step, const Vec3Array<Real>& x,
                           const Vec3Array<Real>& v) {
@@ -65,7 +60,7 @@ double damping_work(const Step<Real>& step) {
 /// Whether the energy after a substep has a source; if so, updates the credit of lost energy.
 bool explained(const Energies& before, const Energies& after, double work, double& credit) {
   const double excess = after.total() - before.total() - work - credit;
-  const double rounding = kRoundingEnergy * (mechanical(before) + std::abs(work) + 1e-9);
+  const double rounding = kRoundingEnergy * (before.mechanical() + std::abs(work) + 1e-9);
   if (!(excess <= rounding)) return false;
   credit = std::max(0.0, -excess);
   return true;
@@ -87,7 +82,7 @@ double air_turnover(const Step<Real>& step) {
 template <class Real>
 bool is_violent(const Step<Real>& step, const EnergyReading& before, const EnergyReading& after,
                 double work, bool sound) {
-  const double had = mechanical(before.energies);
+  const double had = before.energies.mechanical();
   if (!(had > step.work.violent_energy)) return false;
   if (!(std::max(before.largest_strain, after.largest_strain) > kViolentStrain)) return false;
   const double lost = before.energies.total() + work - after.energies.total() - damping_work(step);
