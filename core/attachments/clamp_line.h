@@ -70,7 +70,7 @@ double cell_of(const ClothPart<Real>& part, std::size_t axis);
 
 /// Gives the grids of a model the factors of these clamps, and its meshes their strips, and those
 /// of no others.
-/// @returns the parts where these changed; what follows from them is then to be made anew:
+/// @returns the parts where these changed; what follows from them is then to be recomputed:
 ///          `stiffen_hinges`, `renew_links`, `renew_bending_bounds`, and whatever else was prepared
 ///          from the model
 template <class Real>
@@ -81,11 +81,11 @@ std::vector<std::size_t> set_clamps(const Clamps& clamps, ClothModel<Real>& mode
 template <class Real>
 void stiffen_hinges(std::size_t part, ClothModel<Real>& model);
 
-/// Makes the links of a mesh that bends by them anew.
+/// Recomputes the links of a mesh that bends by them.
 template <class Real>
 void renew_links(std::size_t part, ClothModel<Real>& model);
 
-/// Bounds the frequencies of a part's bending anew, and leaves those of the membrane.
+/// Recomputes the bounds of a part's bending; those of the membrane stay.
 template <class Real>
 void renew_bending_bounds(std::size_t part, ClothModel<Real>& model);
 

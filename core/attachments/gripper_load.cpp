@@ -1,4 +1,4 @@
-// Sums what the cloth did to both jaws of a gripper.
+// Sums the load of the cloth on both jaws of a gripper.
 
 #include "core/attachments/gripper_load.h"
 

@@ -45,8 +45,8 @@ inline constexpr int kMostDashpotStages = 1000;
 
 // The moduli of XPBD.
 
-/// Strain with which they are computed [1]. Larger: strains are no longer small. Smaller: what is
-/// added to the squared length of springs counts.
+/// Strain with which they are computed [1]. Larger: strains are no longer small. Smaller: what
+/// keeps the squared length of springs positive counts.
 inline constexpr double kProbedStrain = 1e-4;
 
 /// Side of the square in the middle of a grid whose springs count [cells]. Larger: the border comes

@@ -285,7 +285,7 @@ bool rows_alone(const Tick<Real>& tick) {
   return true;
 }
 
-/// All substeps of such a tick.
+/// All substeps of a tick that needs only the sweeps' own arrays.
 template <class Real>
 void advance_rows(Tick<Real>& tick, int substeps) {
   const auto times = static_cast<std::size_t>(substeps);

@@ -5,7 +5,7 @@
 
 #include "core/world/world.h"
 
-// What the damping of a fabric comes to on the mesh of its cloth.
+// Damping of a fabric on the mesh of its cloth, and the substeps that it takes.
 
 namespace weft {
 

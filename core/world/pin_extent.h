@@ -24,7 +24,7 @@ struct PinExtent {
 
 /// The pins of a world at its start whose width, radius or area differs from what was asked for by
 /// more than kToldDifference. Single particles and strips of no width ask for none. A disc's area
-/// is that within the fabric, and what it holds the share of its particles in the fabric's mass.
+/// is that within the fabric; the area that it holds follows from its particles' mass.
 template <class Real>
 std::vector<PinExtent> coarse_pins(const World<Real>& world);
 

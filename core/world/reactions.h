@@ -33,8 +33,8 @@ struct Reactions {
   std::vector<Vec3d> colliders;
 };
 
-/// What pins give: minus what their particles got in the tick from the cloth, air, hands, gravity
-/// and contacts.
+/// Adds the forces of pins: minus the impulses that their particles got in the tick from the cloth,
+/// air, hands, gravity and contacts, over its length.
 /// @param held       of the tick
 /// @param seconds    its length
 /// @param reactions  receives `pins`; its contacts are taken into account

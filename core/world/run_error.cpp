@@ -16,7 +16,8 @@
 namespace weft {
 namespace {
 
-/// A mesh has no rows, and what is given particle by particle means another cloth on others.
+/// A mesh has no rows, and springs that are given between particles mean another cloth on more
+/// rows.
 bool is_plain_grid(const ClothDef& cloth) {
   return !cloth.mesh && !cloth.direct_springs && cloth.skip_stiffness == 0;
 }

@@ -278,7 +278,7 @@ class World {
   void finish_pins();
   PinId hold(const PinDef& def);
   void renew_clamps();
-  void weave_hinges(std::size_t part);
+  void restore_hinges(std::size_t part);
   void refuse_jaw(std::size_t collider) const;
   void take_fabric(std::size_t cloth, const FabricDef& fabric);
   void build_contact();

@@ -50,7 +50,7 @@ void World<Real>::renew_clamps() {
   const std::vector<std::size_t> changed = set_clamps(clamps_of(pins_), model_);
   if (changed.empty()) return;
   for (const std::size_t part : changed) {
-    weave_hinges(part);
+    restore_hinges(part);
     stiffen_hinges(part, model_);
     renew_links(part, model_);
     renew_bending_bounds(part, model_);
@@ -59,17 +59,17 @@ void World<Real>::renew_clamps() {
   report_present_state();
 }
 
-/// Makes the hinges of a cloth what they were without clamps.
+/// Restores the hinges of a cloth to what they are without clamps.
 template <class Real>
-void World<Real>::weave_hinges(std::size_t number) {
+void World<Real>::restore_hinges(std::size_t number) {
   const ClothPart<Real>& part = model_.parts[number];
   if (part.hinges.count == 0) return;
-  const ClothModel<Real> woven = build_cloth<Real>(cloths_to_build(def_)[number]);
-  assert(woven.hinges.size() == static_cast<std::size_t>(part.hinges.count));
-  for (std::size_t k = 0; k < woven.hinges.size(); ++k) {
+  const ClothModel<Real> built = build_cloth<Real>(cloths_to_build(def_)[number]);
+  assert(built.hinges.size() == static_cast<std::size_t>(part.hinges.count));
+  for (std::size_t k = 0; k < built.hinges.size(); ++k) {
     Hinge<Real>& hinge = model_.hinges[static_cast<std::size_t>(part.hinges.first) + k];
-    hinge.stiffness = woven.hinges[k].stiffness;
-    hinge.damping = woven.hinges[k].damping;
+    hinge.stiffness = built.hinges[k].stiffness;
+    hinge.damping = built.hinges[k].damping;
   }
 }
 
@@ -304,7 +304,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template PinId World<Real>::pin(const PinDef&);                                       \
   template PinId World<Real>::hold(const PinDef&);                                      \
   template void World<Real>::renew_clamps();                                            \
-  template void World<Real>::weave_hinges(std::size_t);                                 \
+  template void World<Real>::restore_hinges(std::size_t);                               \
   template bool World<Real>::unpin(PinId);                                              \
   template bool World<Real>::move_pin(PinId, const PinMove&);                           \
   template bool World<Real>::stop_pin(PinId);                                           \

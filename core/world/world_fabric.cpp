@@ -29,8 +29,8 @@ std::unique_ptr<World<Real>> World<Real>::fork() const {
 }
 
 /// Builds anew all that follows from masses, stiffness, thickness or friction. The topology stays,
-/// and so do positions, velocities, pins and hands. What a definition may not have is refused while
-/// the model is built, and leaves this world unfit for use.
+/// and so do positions, velocities, pins and hands. Throws DefinitionError while the model is built
+/// if the fabric does not suit it; this world is then unfit for use.
 template <class Real>
 void World<Real>::take_fabric(std::size_t cloth, const FabricDef& fabric) {
   assert(cloth < def_.cloths.size());

@@ -42,8 +42,8 @@ DivergenceCause cause_of(const BlowUp& blow_up) {
   return DivergenceCause::not_finite;
 }
 
-/// Gives hands what they did last before the tick that failed, whose forces may not be finite; a
-/// hand that took hold in it did nothing yet.
+/// Restores the hands' forces from before the tick that failed, whose own may not be finite; a hand
+/// that took hold in it has none.
 template <class Real>
 void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
   for (Grab<Real>& grab : grabs.list) {

@@ -68,8 +68,8 @@ inline constexpr int kCoarsestSweeps = 30;
 /// high modes are not smoothed. Smaller: all are, slowly.
 inline constexpr double kJacobiDamping = 0.857;
 
-/// Factor by which pinned particles are heavier on the coarse levels [1]. Larger: float loses what
-/// stands beside it. Smaller: coarse levels move what is pinned.
+/// Factor by which pinned particles are heavier on the coarse levels [1]. Larger: float loses the
+/// entries of free particles beside it. Smaller: coarse levels move pinned particles.
 inline constexpr double kPinnedWeight = 1e5;
 
 /// Sine of the angle between the threads of a triangle below which it has no normal [1]: it then
