@@ -80,6 +80,7 @@ struct BendingLink {
 /// near by. The links sum the energies of their squares; the dashpots need each on its own.
 template <class Real>
 struct TriangleCurvatures {
+  std::vector<Index> triangles;  ///< that bend: not in a held strip; counted from the part's first
   std::vector<std::size_t> begin;   ///< of each triangle's particles below, and the last one's end
   std::vector<Index> particles;     ///< counted from the part's first
   std::vector<Vec3<Real>> weights;  ///< of each in the three curvatures [1/m^2]

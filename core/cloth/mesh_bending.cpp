@@ -186,9 +186,10 @@ class BendingMatrix {
 };
 
 template <class Real>
-void append(const std::vector<CurvatureWeight>& curvature, const Eigen::Vector3d& stiffness,
-            TriangleCurvatures<Real>& list) {
+void append(std::size_t triangle, const std::vector<CurvatureWeight>& curvature,
+            const Eigen::Vector3d& stiffness, TriangleCurvatures<Real>& list) {
   if (list.begin.empty()) list.begin.push_back(0);
+  list.triangles.push_back(static_cast<Index>(triangle));
   for (const CurvatureWeight& one : curvature) {
     list.particles.push_back(one.particle);
     list.weights.push_back(one.weight.cast<Real>());
@@ -265,7 +266,7 @@ void bend_by_links(const ClothModel<Real>& model, ClothPart<Real>& part) {
       append(corners, weights, rest, stiffness, flat.area, part.rest_curves);
     }
     matrix.add(weights, stiffness);
-    if (part.bending_time > 0) append(weights, stiffness, part.curvatures);
+    if (part.bending_time > 0) append(t, weights, stiffness, part.curvatures);
   }
   part.bending_links = matrix.links();
   part.bending_stencils = part.bending_links.size();

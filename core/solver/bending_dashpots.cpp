@@ -96,8 +96,8 @@ void BendingDashpots<Real>::list(const ClothModel<Real>& model, const ClothPart<
     for (int n = 0; n < count; ++n) list.weights.push_back(static_cast<Real>(weights[n]));
     std::array<Index, 4> plane{};
     if (part.bends_by_links) {
-      const auto t = static_cast<std::size_t>(part.triangles.first) + count_of_mesh++ / 3;
-      const Triangle& corners = model.triangles[t];
+      const Index t = part.triangles.first + part.curvatures.triangles[count_of_mesh++ / 3];
+      const Triangle& corners = model.triangles[static_cast<std::size_t>(t)];
       plane = {corners[0], corners[1], corners[0], corners[2]};
     } else if (count == 3) {
       const Index aside = beside.at({std::min(p[0], p[1]), std::max(p[0], p[1])});
