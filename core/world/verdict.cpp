@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <limits>
 
 #include "core/error.h"
 #include "core/world/constants.h"
@@ -52,9 +53,13 @@ void Verdict<Real>::look_at_rest(const World<Real>& world) {
   const VerdictDef& def = world.def().verdict;
   if (def.back_by == 0) return;
   const Vec3Array<Real>& x = world.state().x;
-  const double half = world.tick_seconds() / 2;
-  if (std::abs(world.report().time - def.rest_at) < half) rest_ = x;
-  if (std::abs(world.report().time - def.back_by) >= half || rest_.empty()) return;
+  const double time = world.report().time + world.tick_seconds() / 2;
+  if (rest_.empty() && time >= def.rest_at) rest_ = x;
+  if (time < def.back_by || !std::isnan(rest_error)) return;
+  if (rest_.empty()) {  // it is to be back before it rests
+    rest_error = height_error = std::numeric_limits<double>::infinity();
+    return;
+  }
   height_error = change_of_heights(world.model(), rest_, x);
   Vec3d mean = Vec3d::Zero();
   for (const Vec3<Real>& p : rest_) mean += p.template cast<double>();

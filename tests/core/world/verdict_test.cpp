@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <limits>
+#include <tuple>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
 #include "core/geometry/distance.h"
 #include "tests/support/cloths.h"
 #include "tests/support/sheets.h"
+#include "tests/support/worlds.h"
 
 using namespace weft;
 
@@ -85,4 +88,24 @@ TEST_CASE("what the guard took before a tick was taken back is counted in the ve
   verdict.look(world);
   CHECK(world.guard()->counts().wanted >= wanted);
   CHECK(verdict.lost_motion * world.guard()->counts().wanted >= lost * (1 - 1e-12));
+}
+
+TEST_CASE("what is to return to its rest is judged whenever that is, and fails if it never rests") {
+  // A free sheet falls on and on. At 60 Hz half a tick lies between two ticks.
+  const double half = 0.5 / 60;
+  for (const auto& [rest_at, back_by, fails] : std::vector<std::tuple<double, double, bool>>{
+           {0, 0.2, true}, {0.1 + half, 0.2 + half, true}, {0.3, 0.2, true}, {0.1, 0, false}}) {
+    INFO("rest at " << rest_at << " s, back by " << back_by << " s");
+    WorldDef def = test::empty_world(test::flat_cloth(5, 5));
+    def.environment.gravity = Vec3d(0, -9.81, 0);
+    def.verdict.rest_at = rest_at;
+    def.verdict.back_by = back_by;
+    World<float> world(def);
+    Verdict<float> verdict;
+    for (int tick = 0; tick < 20; ++tick) {
+      world.step();
+      verdict.look(world);
+    }
+    CHECK(verdict.failures(def.verdict).size() == (fails ? 1 : 0));
+  }
 }
