@@ -120,6 +120,8 @@ std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const 
     feed(hash, &grab.target, 1);
     feed(hash, &grab.def.stiffness, 1);
     feed(hash, &grab.def.max_force, 1);
+    feed(hash, &grab.offset, 1);
+    if (grab.def.mode == GrabMode::live) feed(hash, &grab.force, 1);  // where the next one begins
     if (grab.def.mode == GrabMode::sling) feed(hash, &grab.def.mode, 1);
   }
   for (const SlingImpulse<Real>& impulse : grabs.impulses) {
