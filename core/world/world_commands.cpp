@@ -26,8 +26,8 @@ PinId World<Real>::pin(const PinDef& def) {
 /// Pins without regard to how the cloth bends at the border.
 template <class Real>
 PinId World<Real>::hold(const PinDef& def) {
-  masses_changed();
   const PinId id = add_pin(model_, def, pins_, state_);
+  masses_changed();
   wake(pins_.list.back().centre);
   report_motion();  // pinned particles have lost their velocity
   return id;
@@ -35,11 +35,11 @@ PinId World<Real>::hold(const PinDef& def) {
 
 template <class Real>
 bool World<Real>::unpin(PinId id) {
-  masses_changed();
   wake_held(id);
-  const bool found = remove_pin(model_, id, pins_, state_);
+  if (!remove_pin(model_, id, pins_, state_)) return false;
+  masses_changed();
   renew_clamps();
-  return found;
+  return true;
 }
 
 /// Bends cloth at the borders of pinned strips as if clamped there. The factors are constants of
@@ -76,9 +76,10 @@ void World<Real>::restore_hinges(std::size_t number) {
 template <class Real>
 bool World<Real>::move_pin(PinId id, const PinMove& move) {
   validate(move);  // before anything wakes
-  masses_changed();
   wake_held(id);
-  return weft::move_pin(model_, id, move, pins_, state_);
+  if (!weft::move_pin(model_, id, move, pins_, state_)) return false;
+  masses_changed();
+  return true;
 }
 
 template <class Real>

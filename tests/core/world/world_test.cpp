@@ -1,6 +1,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/error.h"
+#include "tests/support/sheets.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
@@ -216,6 +217,21 @@ TEST_CASE("bad pins, hands and environments are refused by name and change nothi
   environment.wind[1] = 1e9;
   CHECK_THROWS_AS(world.set_environment(environment), DefinitionError);
   CHECK(world.hash() == before);
+}
+
+TEST_CASE("a pin that is not there cannot be freed or moved, and no bit of the future changes") {
+  World<float> left(test::upright_sheet(14, 0.6, 0.75, 0.25, 0.2));
+  World<float> asked(left.def());
+  for (World<float>* world : {&left, &asked}) test::jolt(*world, 5, 3);
+  PinMove move;
+  for (int tick = 0; tick < 40; ++tick) {
+    CHECK_FALSE(asked.unpin(999));
+    CHECK_FALSE(asked.move_pin(999, move));
+    left.step();
+    asked.step();
+    REQUIRE(asked.hash() == left.hash());
+  }
+  CHECK(left.guard()->counts().wanted > 0);  // it crumples
 }
 
 TEST_CASE("fields are set by path and refused with what is allowed") {
