@@ -299,7 +299,7 @@ export class WeftClient extends Session {
    * @param {{paused?: boolean}} [options]
    * @param {Call} [call]
    */
-  fork(name, options = {}, call) {
+  fork(name, options = {}, call = { timeout: LOAD_TIMEOUT }) {
     return this.request('fork', { name, ...known('fork', options) }, call);
   }
 

@@ -4,8 +4,8 @@
 
 A room is a folder of core, or another folder at the top. Functions and classes are those that
 universal-ctags finds; a function is as long as the lines from its name to its closing brace.
-Code are the lines that hold more than a comment, an assert or nothing. Comments are those that hold one. Upward includes are those that the floors of core and
-server forbid (layers.py).
+A line of code is neither blank nor a comment nor part of an assert; a comment is a line that holds
+one. Upward includes are those that the floors of core and server forbid (layers.py).
 """
 
 import json

@@ -20,8 +20,9 @@ Units are SI and y is up. Vertex data has one row per vertex: a numpy array if n
 
 No call waits forever: `timeout` of `connect` and `open` bounds joining, `call_timeout` every answer (30 s), and
 each command takes a `timeout` of its own; None: no bound. A call without an answer in time raises CallTimeout.
-`load` waits 300 s by default, `advance` 60 s and one more for each tick, and only `until_asleep` forever. Commands
-are paced to keep the server's limit of messages a second: a loop of calls simply runs at that rate.
+`load`, `create_room` and `fork` wait 300 s by default, `advance` 60 s and one more for each tick, and only
+`until_asleep` forever. Commands are paced to keep the server's limit of messages a second: a loop of calls simply
+runs at that rate.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ from .results import (
     AdvanceResult, HelloResult, LoadResult, MoveResult1, MoveResult2, PinResult, ReleaseResult, ViewResult,
 )  # fmt: skip
 from .samples import Frame, Hit
-from .timeouts import ADVANCE_SECONDS, ADVANCE_TICK_SECONDS, CLIENTS, LOAD_SECONDS
+from .timeouts import ADVANCE_SECONDS, ADVANCE_TICK_SECONDS, CLIENTS
 
 
 class Observation(AdvanceResult):
@@ -178,8 +178,6 @@ class Client(Queries):
         self, scene: str | Mapping[str, Any], *, timeout: float | None = CLIENTS
     ) -> LoadResult:
         """Replaces the scene, by its name or by a whole scene as a dict."""
-        if timeout is CLIENTS:
-            timeout = LOAD_SECONDS
         return await self.request("load", timeout=timeout, scene=scene)
 
     async def view(

@@ -18,7 +18,7 @@ from .pace import USUAL_RATE, Pace, pause_before
 from .packed import FrameDecoder
 from .reading import demand
 from .samples import Data, Frame, MeshData
-from .timeouts import CALL_SECONDS, CLIENTS
+from .timeouts import CALL_SECONDS, CLIENTS, SCENE_SECONDS
 
 Value = TypeVar("Value")
 
@@ -102,7 +102,7 @@ class Session:
 
     async def _in_time(self, what: str, timeout: float | None, waiting: Awaitable[Value]) -> Value:
         """Its result, or CallTimeout."""
-        seconds = self.call_timeout if timeout is CLIENTS else timeout
+        seconds = SCENE_SECONDS.get(what, self.call_timeout) if timeout is CLIENTS else timeout
         bound = asyncio.timeout(seconds)
         try:
             async with bound:

@@ -97,11 +97,12 @@ class CallsTest(unittest.IsolatedAsyncioTestCase):
 
     async def test_a_time_out_of_none_waits_for_ever_and_that_of_the_client_is_for_all_calls(self):
         async with weft.connect(self.server.url, call_timeout=0.02) as client:
-            self.server.answers = {"hash": [], "advance": [], "load": []}
+            self.server.answers = {"hash": [], "advance": [], "load": [], "create_room": [], "fork": []}
             for wait in (client.hash, client.next_frame):
                 with self.assertRaises(weft.CallTimeout):
                     await wait()
-            patient = [client.hash(timeout=None), client.advance(10), client.load("flag"), client.until_asleep()]
+            patient = [client.hash(timeout=None), client.advance(10), client.load("flag"), client.until_asleep(),
+                       client.create_room("mine"), client.fork("ours")]
             tasks = [asyncio.create_task(call) for call in patient]
             await asyncio.sleep(0.1)
             self.assertFalse(any(task.done() for task in tasks))
