@@ -84,7 +84,7 @@ TEST_CASE("each scene has the same hash with one and two threads, and the golden
       {"flag", 0x6f242c3c10a768a1},
       {"drape-sphere", 0xe86bc6f95bb1a264},
       {"wall", 0xb392d565fa6aa92b},
-      {"mesh", 0x4aaa0ff30fcca4eb},
+      {"mesh", 0x469ad01a9db2a25a},
       {"XPBD", 0x5ad6b9292091024b},
       {"seed's relaxation", 0x46c48db539c113f0},
       {"implicit", 0x2adf8d80aba1f556},
