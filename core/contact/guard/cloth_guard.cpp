@@ -44,34 +44,67 @@ void open_touching(std::size_t first, bool unseen, const QuadArray<Real>& x, Rea
   });
 }
 
+// What a reset forgets keeps its memory, so that no step after it allocates.
+
+template <class Real>
+void forget(RowMaking<Real>& making) {
+  making.made = false;
+  making.passed.clear();
+  std::fill(making.is_moved.begin(), making.is_moved.end(), 0);
+  for (RowPart<Real>& part : making.parts) {
+    part.columns.clear();
+    part.passed.clear();
+    for (std::vector<GuardRow<Real>>& rows : part.rows) rows.clear();
+  }
+}
+
+template <class Real>
+void forget(Regions<Real>& regions) {
+  regions.dirty.clear();
+  regions.columns.clear();
+  for (AnchorPart<Real>& part : regions.parts) part.columns.clear(), part.next.clear();
+}
+
+template <class Real>
+void forget(CriticalSteps<Real>& critical) {
+  critical.pairs.clear();
+  critical.tight.clear();
+  std::fill(critical.is_tight.begin(), critical.is_tight.end(), 0);
+  std::fill(critical.fraction.begin(), critical.fraction.end(), Real(1));
+}
+
+template <class Real>
+void forget(GuardedPairs<Real>& pairs) {
+  for (std::vector<GuardedPair<Real>>* list : {&pairs.all, &pairs.arrived}) list->clear();
+  pairs.active.clear();
+  pairs.open_keys.clear();
+  pairs.open = 0;
+}
+
+template <class Real>
+void forget(PushOut<Real>& push) {
+  std::fill(push.extra.begin(), push.extra.end(), Quad<Real>());
+  std::fill(push.is_pushed.begin(), push.is_pushed.end(), 0);
+  push.particles.clear();
+  push.v.clear();
+}
+
+template <class Real>
+void forget(GuardedTangles<Real>& tangled) {
+  tangled.tangles.reset();
+  tangled.is_heap.assign(tangled.is_heap.size(), 0);
+  tangled.heaps = 0;
+  tangled.unseen = true;
+}
+
 }  // namespace
 
 template <class Real>
 ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
-    : executor_(executor), cloths_(guarded_cloths(model)), search_(patch_search(model)) {
-  tangled_.tangles = ClothTangles<Real>(model);
-  awake_.resting.assign(search_.tree.patch_count(), 0);
-  reset();
-  let_rest({});
-}
-
-template <class Real>
-void ClothGuard<Real>::reset() {
-  const std::size_t n = cloths_.rest_positions.size(), cloths = cloths_.particles_of.size();
-  phase_ = GuardPhase::between_steps;
-  forget_found(search_);
-  step_ = {};
-  paths_ = {};
-  pairs_ = {};
-  regions_ = {};
-  critical_ = {};
-  slack_ = {};
-  calm_ = {};
-  making_ = row_making<Real>(n);
-  rows_ = row_set<Real>(n);
-  sweeps_ = {};
-  push_ = push_out<Real>(n);
-  settled_ = true;
+    : executor_(executor), cloths_(guarded_cloths(model)), search_(patch_search(model)),
+      making_(row_making<Real>(model.mass.size())), rows_(row_set<Real>(model.mass.size())),
+      push_(push_out<Real>(model.mass.size())) {
+  const std::size_t n = model.mass.size(), cloths = cloths_.particles_of.size();
   for (QuadArray<Real>* array : {&step_.from, &step_.displacement, &paths_.from, &paths_.velocity,
                                  &regions_.anchor, &sweeps_.v})
     array->assign(n, {});
@@ -85,11 +118,28 @@ void ClothGuard<Real>::reset() {
   regions_.anchored_at.assign(n, 0);
   regions_.parts.resize(kMostParts);
   calm_.paths.reach = cloths_.reach;
-  tangled_.tangles.reset();
+  tangled_.tangles = ClothTangles<Real>(model);
   tangled_.is_heap.assign(cloths, 0);
   tangled_.crossings_of.assign(cloths, 0);
-  tangled_.heaps = 0;
-  tangled_.unseen = true;
+  awake_.resting.assign(search_.tree.patch_count(), 0);
+  let_rest({});
+}
+
+template <class Real>
+void ClothGuard<Real>::reset() {
+  phase_ = GuardPhase::between_steps;
+  paths_.collected = false;
+  forget_found(search_);
+  forget(making_);
+  forget(regions_);
+  forget(critical_);
+  forget_rows(rows_);
+  forget(pairs_);
+  forget(push_);
+  forget(tangled_);
+  sweeps_.kicked = 0;
+  sweeps_.upwards = false;
+  settled_ = true;
 }
 
 template <class Real>
