@@ -97,6 +97,8 @@ TEST_CASE("forces that nobody asks for any more are measured no longer, nor afte
   t.say(1, R"({"op":"advance","n":)" + std::to_string(kForcesAskedTicks - 1) + "}");
   CHECK(t.room->world().reactions() != nullptr);
   t.say(1, R"({"op":"advance","n":1})");
+  CHECK(t.room->world().reactions() != nullptr);  // of the last tick that measured
+  t.say(1, R"({"op":"advance","n":1})");
   CHECK(t.room->world().reactions() == nullptr);
   asked_force(t);
   t.say(1, R"({"op":"reset"})");

@@ -3,7 +3,8 @@
 import math
 
 CALL_SECONDS = 30.0  # for an answer or a frame
-SCENE_SECONDS = dict.fromkeys(("load", "create_room", "fork"), 300.0)  # for answers to what builds a scene
+# For an answer to what builds a scene.
+SCENE_SECONDS: dict[str, float] = dict.fromkeys(("load", "create_room", "fork"), 300.0)
 REFUSAL_SECONDS = 2.0  # for why a server refuses a connection
 ADVANCE_SECONDS, ADVANCE_TICK_SECONDS = 60.0, 1.0  # for an answer to `advance`, and more for each tick
 

@@ -13,7 +13,6 @@ from ..address import socket_address, token_of
 from ..client import Client
 from ..connecting import connect
 from ..runner import Runner
-from ..timeouts import LOAD_SECONDS
 from .actors import Actor, Gripper
 from .arena import Arena, Preparation, action_space, observation_space
 from .env import Randomise, Reward, lifted
@@ -68,7 +67,7 @@ class VectorClothEnv(VectorEnv):
     async def _open(
         self, scene: Any, actors: Callable[[], Sequence[Actor]], ticks: int, prepare: Preparation | None
     ) -> None:
-        await self._hall.create_room(self._names[0], paused=True, timeout=LOAD_SECONDS)
+        await self._hall.create_room(self._names[0], paused=True)
         first = Arena(await self._join(self._names[0]), actors(), ticks)
         await first.set_up(scene, prepare)
         for name in self._names[1:]:
