@@ -58,6 +58,11 @@ inline constexpr double kFlatRestAngle = 1e-5;
 /// Smaller: rounding of a file's vertices makes a flat mesh a curved one, which takes longer.
 inline constexpr double kFlatRest = 1e-3, kRoundingsOfFlat = 4;
 
+/// Height of the lower of two triangles that lie on each other at an edge, over that of the higher
+/// one, from which on they are a fold [1]. Larger: folded meshes are taken for flat ones. Smaller:
+/// needles that rounding has turned over make a flat mesh a curved one.
+inline constexpr double kLeastFold = 0.01;
+
 /// Error of a slope across an edge up to which it is not corrected, relative to the rise of a
 /// quadratic field to the next particle [1]. Larger: meshes bend too stiffly by up to this.
 /// Smaller: rounding of a regular mesh's vertices couples each particle to half as many more.

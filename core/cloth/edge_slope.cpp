@@ -62,8 +62,14 @@ EdgeSlopes::Frame EdgeSlopes::frame_of(const EdgeSides& edge) const {
   frame.length = frame.along.norm();
   assert(frame.length > 0);
   frame.along /= frame.length;
-  const Vec3d up = at(edge.opposite[0]) - frame.middle;
-  frame.across = (up - frame.along * up.dot(frame.along)).normalized();
+  const auto out = [&](std::size_t side) -> Vec3d {
+    const Vec3d to = at(edge.opposite[side]) - frame.middle;
+    return to - frame.along * to.dot(frame.along);
+  };
+  frame.across = out(0).normalized();
+  // Where rounding has turned a needle over, the higher triangle says which side is which.
+  if (!edge.is_border() && out(1).dot(frame.across) >= out(0).norm())
+    frame.across = -out(1).normalized();
   for (std::size_t side = 0; side < (edge.is_border() ? 1U : 2U); ++side) {
     const Vec3d to = at(edge.opposite[side]) - frame.middle;
     frame.foot[side] = to.dot(frame.along);
@@ -175,7 +181,7 @@ std::vector<ParticleWeight> EdgeSlopes::mean_inside(const EdgeSides& edge,
   std::vector<ParticleWeight> slope;
   const double whole = frame.y[0] - frame.y[1];  // of a border edge y[1] is 0
   for (std::size_t side = 0; side < (edge.is_border() ? 1U : 2U); ++side) {
-    add_inside(edge, frame, side, std::abs(frame.y[side]) / whole, slope);
+    add_inside(edge, frame, side, (side == 0 ? frame.y[0] : -frame.y[1]) / whole, slope);
   }
   return slope;
 }
@@ -252,7 +258,11 @@ std::vector<ParticleWeight> EdgeSlopes::across_best_fit(std::size_t number,
   const Eigen::Vector2d from = place_of(edge.ends[0], frame), to = place_of(edge.ends[1], frame),
                         middle = 0.5 * (from + to);
   Eigen::Vector2d in = Eigen::Vector2d(from[1] - to[1], to[0] - from[0]).normalized();
-  if (in.dot(place_of(edge.opposite[0], frame) - middle) < 0) in = -in;
+  const auto height = [&](std::size_t side) {
+    return in.dot(place_of(edge.opposite[side], frame) - middle);
+  };
+  const bool by_both = shapes_ == nullptr && !edge.is_border();
+  if (height(0) - (by_both ? height(1) : 0) < 0) in = -in;
   const std::vector<double> weights = fit.slope(in, slope_of_squares(middle, in));
   std::vector<ParticleWeight> slope;
   for (std::size_t k = 0; k < weights.size(); ++k)
@@ -303,6 +313,11 @@ void EdgeSlopes::find_needles() {
       add_member(e, needles_[static_cast<std::size_t>(root)]);
     }
   }
+}
+
+bool EdgeSlopes::goes_into(std::size_t edge, std::size_t side) const {
+  assert(edge < edges_.size() && edges_[edge].triangle[side] != kNone);
+  return shapes_ == nullptr ? frame_of(edges_[edge]).y[side] > 0 : side == 0;
 }
 
 bool EdgeSlopes::meets_held(const EdgeSides& edge, const std::vector<double>& beyond) const {

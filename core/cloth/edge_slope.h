@@ -58,6 +58,10 @@ class EdgeSlopes {
   /// @param edge  number of it
   std::vector<ParticleWeight> across(std::size_t edge) const;
 
+  /// Whether these slopes go into one of the edge's triangles, 0 or 1, and not out of it: into the
+  /// first, unless rounding has turned one over.
+  bool goes_into(std::size_t edge, std::size_t side) const;
+
   /// The mean slope across an edge beside a clamp, in the same sense: exact for the field whose
   /// only curvature is across the clamp's border and which is zero and level up to that.
   /// @param beyond  distance of each particle beyond the border, negative where it is held

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/cloth/constants.h"
+#include "core/cloth/edge_sides.h"
 #include "core/cloth/pieces.h"
 
 namespace weft {
@@ -20,6 +21,22 @@ struct PieceShape {
   std::size_t edge_count = 0;
 };
 
+/// Whether the triangles at an edge lie on each other. One that is next to none of the other may
+/// have come over the edge by rounding.
+/// @param at  place of a particle [m]
+template <class At>
+bool folds_over(const EdgeSides& edge, const At& at) {
+  if (edge.is_border()) return false;
+  const Vec3d start = at(edge.ends[0]), along = (at(edge.ends[1]) - start).normalized();
+  const auto out = [&](Index opposite) -> Vec3d {
+    const Vec3d to = at(opposite) - start;
+    return to - along * along.dot(to);
+  };
+  const Vec3d first = out(edge.opposite[0]), second = out(edge.opposite[1]);
+  const auto [low, high] = std::minmax({first.norm(), second.norm()});
+  return first.dot(second) > 0 && low > kLeastFold * high;
+}
+
 }  // namespace
 
 template <class Real>
@@ -29,6 +46,10 @@ bool lies_flat(const ClothModel<Real>& model) {
   const auto at = [&](Index i) -> Vec3d {
     return model.rest_positions[static_cast<std::size_t>(i)].template cast<double>();
   };
+  const std::vector<EdgeSides> edges = sides_of(model.triangles);
+  if (std::any_of(edges.begin(), edges.end(),
+                  [&](const EdgeSides& edge) { return folds_over(edge, at); }))
+    return false;
   const auto piece = [&](Index i) -> PieceShape& {
     return pieces[static_cast<std::size_t>(piece_of[static_cast<std::size_t>(i)])];
   };

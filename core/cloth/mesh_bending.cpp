@@ -132,9 +132,10 @@ std::vector<CurvatureWeight> curvature(const Triangle& t, std::size_t index,
     // `out` twice is twice the direction and twice the length, of which one is the edge's.
     const Eigen::Vector3d direction =
         Eigen::Vector3d(out[0] * out[0], out[1] * out[1], out[0] * out[1]) / (length * flat.area);
-    const bool is_first = mesh.edges()[e].triangle[0] == static_cast<Index>(index);
+    const std::size_t side = mesh.edges()[e].triangle[0] == static_cast<Index>(index) ? 0 : 1;
+    const double outwards = mesh.goes_into(e, side) ? -1 : 1;
     for (const ParticleWeight& one : slopes[e])
-      add_weight(one.particle, direction * (is_first ? -one.weight : one.weight), list);
+      add_weight(one.particle, direction * (outwards * one.weight), list);
     for (std::size_t corner = 0; corner < 3; ++corner) {
       // The gradient of a corner's linear function is that to the opposite edge, inwards.
       const double inside = -flat.outward(corner).dot(out) / (2 * flat.area * length);

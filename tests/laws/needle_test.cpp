@@ -1,5 +1,8 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <utility>
+#include <vector>
 
 #include <Eigen/Eigenvalues>
 #include <catch2/catch.hpp>
@@ -128,6 +131,67 @@ TEST_CASE("a needle bends as what lies around it, however low it is") {
       CHECK(rolled_error(model) < 0.004);
     }
   }
+}
+
+TEST_CASE("so does a needle that the rounding of a file has turned over") {
+  const double regular = largest_regular_link();
+  for (const ClothDef& def : sheets_with_particles_beside_edges(-1e-6)) {
+    const ClothModel<double> model = build_cloth<double>(def);
+    INFO("link " << largest_link(model) / regular << ", rolled " << rolled_error(model));
+    CHECK_FALSE(model.parts[0].curved_at_rest);
+    CHECK(largest_link(model) < 4 * regular);
+    CHECK(rolled_error(model) < 0.004);
+    const Eigen::VectorXd modes =
+        test::bending_matrix(model).selfadjointView<Eigen::Lower>().eigenvalues();
+    CHECK(std::abs(modes[2]) < 1e-6 * modes[3]);
+  }
+}
+
+TEST_CASE("a pillow that lies flat is at rest there, folded along its border, and stays") {
+  // Two layers sewn along the border. Inside, their particles are 3 mm apart.
+  constexpr Index kSide = 9;
+  ClothMesh pillow;
+  std::array<std::vector<Index>, 2> layer;
+  for (Index i = 0; i < kSide * kSide; ++i) {
+    const Index r = i / kSide, c = i % kSide;
+    const bool border = std::min(r, c) == 0 || std::max(r, c) == kSide - 1;
+    for (std::size_t k = 0; k < 2; ++k) {
+      if (k == 1 && border) {
+        layer[1].push_back(layer[0].back());
+        continue;
+      }
+      layer[k].push_back(static_cast<Index>(pillow.mesh.positions.size()));
+      const double aside = k == 1 ? 0.003 : 0;
+      pillow.mesh.positions.emplace_back(0.02 * c + aside, 0.02 * r + aside, 0);
+    }
+  }
+  for (Index i = 0; i + kSide < kSide * kSide; ++i) {
+    if (i % kSide == kSide - 1) continue;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const auto at = [&](Index n) { return layer[k][static_cast<std::size_t>(n)]; };
+      // The corners' cells are cut such that no triangle is in both layers.
+      const bool rising = (i / kSide < kSide / 2) == (i % kSide < kSide / 2);
+      const Index a = at(i), b = at(i + 1), d = at(i + kSide), e = at(i + kSide + 1);
+      std::array<Triangle, 2> cell = {Triangle{a, b, e}, Triangle{a, e, d}};
+      if (!rising) cell = {Triangle{a, b, d}, Triangle{b, e, d}};
+      for (Triangle& t : cell) {
+        if (k == 1) std::swap(t[1], t[2]);
+        pillow.mesh.triangles.push_back(t);
+      }
+    }
+  }
+  ClothDef def = sheet(Cut::one_diagonal);
+  def.mesh = pillow;
+  const ClothModel<double> model = build_cloth<double>(def);
+  CHECK(model.hinges.empty());
+  CHECK(model.parts[0].curved_at_rest);
+  CHECK(largest_link(model) < 20 * largest_regular_link());
+  CHECK(std::abs(elastic_energy(model, model.rest_positions).bending) < 1e-12);
+  World<float> world(test::empty_world(def));
+  const Vec3Array<float> start = world.state().x;
+  for (int k = 0; k < 60; ++k) world.step();
+  for (std::size_t i = 0; i < start.size(); ++i)
+    REQUIRE((world.state().x[i] - start[i]).norm() < 1e-4F);
 }
 
 TEST_CASE("the links of a low row of triangles grow as 1 / height, no faster") {
