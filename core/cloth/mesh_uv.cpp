@@ -121,19 +121,24 @@ void continue_beyond(const EdgeSides& edge, std::size_t side, const TriangleMesh
 /// @returns whether none is left
 bool fill(const TriangleMesh& mesh, UvHoles& uv) {
   const std::vector<EdgeSides> edges = sides_of(mesh.triangles);
-  for (bool more = true; more;) {
-    more = false;
-    for (const EdgeSides& edge : edges) {
-      if (edge.is_border()) continue;
-      const auto first = static_cast<std::size_t>(edge.triangle[0]),
-                 second = static_cast<std::size_t>(edge.triangle[1]);
-      if (uv.hole[first] == uv.hole[second]) continue;
-      continue_beyond(edge, uv.hole[first] ? 0 : 1, mesh, uv.corners);
-      uv.hole[first] = uv.hole[second] = false;
-      more = true;
+  const auto edges_of = edges_of_triangles(edges, mesh.triangles);
+  std::vector<Index> placed;
+  for (std::size_t t = 0; t < uv.hole.size(); ++t) {
+    if (!uv.hole[t]) placed.push_back(static_cast<Index>(t));
+  }
+  for (std::size_t n = 0; n < placed.size(); ++n) {  // it grows
+    const Index triangle = placed[n];
+    for (const Index e : edges_of[static_cast<std::size_t>(triangle)]) {
+      const EdgeSides& edge = edges[static_cast<std::size_t>(e)];
+      const std::size_t side = edge.triangle[0] == triangle ? 1 : 0;
+      const Index beyond = edge.triangle[side];
+      if (beyond == kNone || !uv.hole[static_cast<std::size_t>(beyond)]) continue;
+      continue_beyond(edge, side, mesh, uv.corners);
+      uv.hole[static_cast<std::size_t>(beyond)] = false;
+      placed.push_back(beyond);
     }
   }
-  return !uv.any();
+  return placed.size() == mesh.triangles.size();
 }
 
 /// Gives vertices that only holes meet at the place of the first one's corner.
