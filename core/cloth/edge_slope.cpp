@@ -21,6 +21,10 @@ std::vector<Edge> ends_of(const std::vector<EdgeSides>& edges) {
   return ends;
 }
 
+/// Edges that share one field at most [1]. Larger: the time to build many needles in a row grows
+/// with the square of their number. Smaller: the slopes of needles that share edges differ by more.
+constexpr std::size_t kMostJoined = 64;
+
 void add_member(Index particle, std::vector<Index>& members) {
   if (std::find(members.begin(), members.end(), particle) == members.end())
     members.push_back(particle);
@@ -310,8 +314,13 @@ void EdgeSlopes::find_needles() {
         needles_.emplace_back();
       }
       needle_of_[static_cast<std::size_t>(e)] = root;
-      add_member(e, needles_[static_cast<std::size_t>(root)]);
+      std::vector<Index>& needle = needles_[static_cast<std::size_t>(root)];
+      if (needle.size() <= kMostJoined) add_member(e, needle);
     }
+  }
+  for (Index& needle : needle_of_) {
+    if (needle != kNone && needles_[static_cast<std::size_t>(needle)].size() > kMostJoined)
+      needle = kNone;
   }
 }
 
