@@ -110,8 +110,8 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
     array->assign(n, {});
   for (Vec3Array<Real>* array : {&calm_.paths.base, &calm_.paths.velocity, &slack_.ends})
     array->assign(n, Vec3<Real>::Zero());
-  for (std::vector<Real>* array : {&step_.length, &paths_.since, &regions_.radius})
-    array->assign(n, Real(0));
+  paths_.since.assign(n, Real(0));
+  regions_.sizes.assign(n, Quad<Real>{{0, 0, -1, 0}});
   for (std::vector<char>* array : {&pairs_.is_active, &critical_.is_tight}) array->assign(n, 0);
   critical_.fraction.assign(n, Real(1));
   regions_.wave_of.assign(n, 0);

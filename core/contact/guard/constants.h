@@ -49,7 +49,7 @@ inline constexpr std::size_t kPairsAtOnce = 1024;
 
 /// The bound of a gap is measured anew unless it leaves a particle room for this many of its steps
 /// [1]. Larger: more measuring. Smaller: particles are anchored again sooner.
-inline constexpr double kStepsOfRoom = 16;
+inline constexpr double kStepsOfRoom = 3;
 
 /// Waves of anchoring after which all pairs are measured anew; more than ever seen. Smaller: a
 /// chain of particles that wait for each other costs a whole measurement.

@@ -22,7 +22,7 @@ template <class Real>
 bool is_critical(const GuardedStep<Real>& step, const Regions<Real>& regions,
                  const std::vector<char>& is_tight, GuardedPair<Real>& pair) {
   const auto [first, second] = largest_on_sides(pair, [&](std::size_t i) {
-    return is_tight[i] ? length(step.displacement[i]) : regions.radius[i];
+    return is_tight[i] ? length(step.displacement[i]) : regions.radius(i);
   });
   const Real needed = first + second + regions.smallest_gap;
   if (pair.bound >= needed) return false;
@@ -39,7 +39,7 @@ void find_tight(const GuardedStep<Real>& step, const Regions<Real>& regions,
   for (const Index k : regions.anchored) {
     const auto i = at_index(k);
     const Quad<Real>& way = step.displacement[i];
-    if (dot(way, way) <= regions.radius[i] * regions.radius[i]) continue;
+    if (dot(way, way) <= regions.radius(i) * regions.radius(i)) continue;
     critical.is_tight[i] = 1;
     critical.tight.push_back(k);
   }

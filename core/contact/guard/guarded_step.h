@@ -2,7 +2,6 @@
 
 #include <cassert>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 #include "core/math/quad.h"
@@ -30,16 +29,8 @@ struct GuardedStep {
   std::uint64_t number = 0;      ///< counts calls of certify
   QuadArray<Real> from;          ///< certified positions, where rows are solved too [m]
   QuadArray<Real> displacement;  ///< wanted in the drift, and allowed where it was truncated [m]
-  std::vector<Real> length;      ///< of the displacement, when it was measured [m]
-  std::uint64_t measured = 0;    ///< number of the step in which it was
   double lost = 0;               ///< displacement truncated in this step [m]
   double allowed = 0;            ///< and what is left of it, in the last one examined [m]
-
-  /// Measures how far all want to move, once a step: gaps are shared by what was wanted at first.
-  void measure_lengths() {
-    if (std::exchange(measured, number) == number) return;
-    for (std::size_t i = 0; i < displacement.size(); ++i) length[i] = weft::length(displacement[i]);
-  }
 
   /// Adds up the displacements of particles in pairs.
   /// @param active  these particles

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <limits>
 #include <span>
+#include <utility>
 
 #include "core/contact/guard/constants.h"
 #include "core/contact/parts.h"
@@ -24,61 +25,97 @@ Real share_of(Real own, Real other) {
   return (own + both) / ((own + both) + (other + both));
 }
 
+/// Measures how far all want to move, once a step: gaps are shared by what was wanted at first.
+template <class Real>
+void measure_lengths(const GuardedStep<Real>& step, Regions<Real>& regions) {
+  if (std::exchange(regions.measured, step.number) == step.number) return;
+  for (std::size_t i = 0; i < step.displacement.size(); ++i)
+    regions.sizes[i].lanes[kLength] = length(step.displacement[i]);
+}
+
 /// Bounds the regions of a pair's particles by their side's share of its gap.
 /// @param takes  whether particle i takes part
 template <class Real, class Takes>
-void share_gap(const GuardedPair<Real>& pair, const GuardedStep<Real>& step, Regions<Real>& regions,
-               Takes&& takes) {
+void share_gap(const GuardedPair<Real>& pair, Regions<Real>& regions, Takes&& takes) {
   const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
   const auto [first, second] =
-      largest_on_sides(pair, [&](std::size_t i) { return step.length[i]; });
+      largest_on_sides(pair, [&](std::size_t i) { return regions.length(i); });
   const Real share = share_of(first, second);
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = at_index(pair.particle[k]);
     if (!takes(i)) continue;
     const Real own = gap * (k < first_side(pair.kind) ? share : 1 - share);
-    regions.radius[i] = std::min(regions.radius[i], own);
+    regions.sizes[i].lanes[kRadius] = std::min(regions.radius(i), own);
   }
+}
+
+template <class Real>
+Quad<Real> largest_of(const Quad<Real>& a, const Quad<Real>& b) {
+  return {a.lanes > b.lanes ? a.lanes : b.lanes};
+}
+
+/// The largest sizes on each side of a pair.
+template <class Real>
+struct SidesOfPair {
+  Quad<Real> first, second;
+};
+
+template <class Real>
+[[gnu::always_inline]] inline SidesOfPair<Real> sides_of(const GuardedPair<Real>& pair,
+                                                         const QuadArray<Real>& sizes) {
+  const auto of = [&](std::size_t k) -> const Quad<Real>& {
+    return sizes[at_index(pair.particle[k])];
+  };
+  // Both kinds come in any order, which no branch could guess.
+  const Quad<Real> none{{-1, -1, -1, -1}};
+  const bool vertex = pair.kind == PairKind::vertex_triangle;
+  const Quad<Real>*on_first = vertex ? &none : &of(1), *on_second = vertex ? &of(1) : &none;
+  return {largest_of(of(0), *on_first), largest_of(largest_of(of(2), of(3)), *on_second)};
+}
+
+/// Whether a particle is the first one of a pair that is being anchored.
+template <class Real>
+bool asks_for(Index particle, const GuardedPair<Real>& pair, const QuadArray<Real>& sizes) {
+  for (const Index k : pair.particle) {
+    if (sizes[at_index(k)][kAhead] >= 0) return k == particle;
+  }
+  return false;
 }
 
 /// Lists the pairs of a particle with the radii that others have in them. Pairs whose bound may be
 /// too small for a particle that is being anchored are listed for measuring. Of a pair's particles
-/// in the wave, only the first asks for the measurement.
+/// in the wave, only the first lists what becomes of the bound.
 template <class Real>
-void list_claims(Index particle, const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
-                 const Regions<Real>& regions, AnchorPart<Real>& part) {
-  const auto ahead_of = [&](Real length) {
-    return length * Real(2 * kStepsOfRoom) + regions.smallest_gap;
-  };
-  const Real ahead = ahead_of(step.length[at_index(particle)]);
+void list_claims(Index particle, const GuardedPairs<Real>& pairs, const Regions<Real>& regions,
+                 AnchorPart<Real>& part) {
+  const Real ahead = regions.sizes[at_index(particle)][kAhead];
+  assert(ahead >= 0 && "is being anchored");
   for_pairs_of(pairs, at_index(particle), [&](const GuardedPair<Real>& pair) {
-    // Those that are being anchored have none yet.
-    const auto [first, second] =
-        largest_on_sides(pair, [&](std::size_t i) { return regions.radius[i]; });
-    const auto [first_length, second_length] =
-        largest_on_sides(pair, [&](std::size_t i) { return step.length[i]; });
+    const auto [first, second] = sides_of(pair, regions.sizes);
     const std::array<Index, 4>& p = pair.particle;
     const bool on_first =
         particle == p[0] || (pair.kind == PairKind::edge_edge && particle == p[1]);
-    const Real most = std::max(first, second), other = on_first ? second : first;
+    const Quad<Real>&own = on_first ? first : second, &across = on_first ? second : first;
+    // The bound of a gap falls by no more than the largest displacements of both sides' anchors.
+    const Real moved = first[kMoved] + second[kMoved], bound = pair.bound - moved;
+    const Real most = std::max(first[kRadius], second[kRadius]);
+    const auto leaves = [&](const Quad<Real>& side, const Quad<Real>& other) {
+      return side[kAhead] < 0 || bound > most + other[kRadius] + side[kAhead];
+    };
     AnchorClaim<Real>& claim = part.claims.emplace_back();
     claim.pair = pairs.number_of(pair);
-    claim.ample = pair.bound > most + other + ahead;
-    claim.own = on_first ? first : second;
-    claim.other = other;
-    claim.own_length = on_first ? first_length : second_length;
-    claim.other_length = on_first ? second_length : first_length;
-    Real ahead_on[2] = {-1, -1};
-    for (std::size_t k = 0; k < 4; ++k) {
-      const auto j = at_index(p[k]);
-      if (regions.wave_of[j] != regions.wave) continue;
-      if (ahead_on[0] < 0 && ahead_on[1] < 0 && p[k] != particle) return;
-      Real& side = ahead_on[k < first_side(pair.kind) ? 0 : 1];
-      side = std::max(side, ahead_of(step.length[j]));
-    }
-    const bool enough = (ahead_on[0] < 0 || pair.bound > most + second + ahead_on[0]) &&
-                        (ahead_on[1] < 0 || pair.bound > most + first + ahead_on[1]);
-    if (!enough) part.columns[pair.kind].add(claim.pair, 0, p);
+    claim.ample = bound > most + across[kRadius] + ahead;
+    claim.measured = !(leaves(first, second) && leaves(second, first));
+    claim.bound = bound;
+    claim.own = own[kRadius];
+    claim.other = across[kRadius];
+    claim.own_length = own[kLength];
+    claim.other_length = across[kLength];
+    if (!asks_for(particle, pair, regions.sizes)) return;
+    if (claim.measured)
+      part.columns[pair.kind].add(claim.pair, 0, p);
+    else if (moved > 0)
+      part.lowered.push_back({claim.pair, bound});
   });
   part.ends.push_back(part.claims.size());
 }
@@ -99,13 +136,13 @@ void measure_claimed(const QuadArray<Real>& anchor, AnchorPart<Real>& part) {
 /// @param first   in the first wave
 template <class Real>
 Real share_claims(Index particle, std::span<const AnchorClaim<Real>> claims, bool first,
-                  const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
-                  const Regions<Real>& regions, std::vector<Index>& next) {
+                  const GuardedPairs<Real>& pairs, const Regions<Real>& regions,
+                  std::vector<Index>& next) {
   Real radius = std::numeric_limits<Real>::infinity();
-  const Real length = step.length[at_index(particle)];
+  const Real length = regions.length(at_index(particle));
   for (const AnchorClaim<Real>& claim : claims) {
-    const GuardedPair<Real>& pair = pairs[claim.pair];
-    const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
+    const Real bound = claim.measured ? pairs[claim.pair].bound : claim.bound;
+    const Real gap = std::max(Real(0), bound - regions.smallest_gap);
     const Real left = gap - claim.other;
     // What is far apart, even if its side gets the least share, changes nothing.
     if (gap * Real(kLeastOfGap) >= radius &&
@@ -118,10 +155,9 @@ Real share_claims(Index particle, std::span<const AnchorClaim<Real>> claims, boo
     const bool too_much = claim.own + claim.other > gap;
     const bool greedy = first && left < share && left < 2 * length;
     if (!too_much && !greedy) continue;
-    for (const Index j : pair.particle) {
-      if (regions.wave_of[at_index(j)] != regions.wave &&
-          (regions.radius[at_index(j)] > 0 || greedy))
-        next.push_back(j);
+    for (const Index j : pairs[claim.pair].particle) {
+      const bool keeps_anchor = regions.sizes[at_index(j)][kAhead] < 0;
+      if (keeps_anchor && (greedy || regions.radius(at_index(j)) > 0)) next.push_back(j);
     }
     next.push_back(particle);
   }
@@ -130,22 +166,63 @@ Real share_claims(Index particle, std::span<const AnchorClaim<Real>> claims, boo
 
 /// Moves the anchors of a wave's particles to where these are.
 template <class Real>
-void move_anchors(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions,
-                  GuardCounts& counts) {
+void move_anchors(const GuardedStep<Real>& step, Regions<Real>& regions, GuardCounts& counts) {
   for (const Index k : regions.in_wave) {
     const auto i = at_index(k);
-    regions.wave_of[i] = regions.wave;
-    regions.radius[i] = 0;
+    Quad<Real>& sizes = regions.sizes[i];
+    sizes.lanes[kRadius] = 0;
+    sizes.lanes[kAhead] = sizes[kLength] * Real(2 * kStepsOfRoom) + regions.smallest_gap;
     if (regions.anchored_at[i] == step.number) continue;
     regions.anchored_at[i] = step.number;
     regions.anchored.push_back(k);
     ++counts.anchored;
-    // The bound of a gap falls by no more than the displacement of an anchor.
-    const Real moved = length(step.from[i] - regions.anchor[i]);
+    sizes.lanes[kMoved] = length(step.from[i] - regions.anchor[i]);
     regions.anchor[i] = step.from[i];
-    if (moved == 0) continue;
-    for_pairs_of(pairs, i, [&](GuardedPair<Real>& pair) { pair.bound -= moved; });
   }
+}
+
+/// Lists the claims of a part's particles, and measures the bounds that they need.
+template <class Real>
+void list_part(std::span<const Index> particles, const GuardedPairs<Real>& pairs,
+               const Regions<Real>& regions, AnchorPart<Real>& part) {
+  part.claims.clear();
+  part.lowered.clear();
+  part.ends.clear();
+  for (const Index k : particles) list_claims(k, pairs, regions, part);
+  measure_claimed(regions.anchor, part);
+}
+
+/// Notes the bounds that a part has found.
+template <class Real>
+void note_bounds(AnchorPart<Real>& part, GuardedPairs<Real>& pairs) {
+  for (const LoweredBound<Real>& lowered : part.lowered) pairs[lowered.pair].bound = lowered.bound;
+  for (PairColumns<Real>& columns : part.columns) {
+    for (std::size_t k = 0; k < columns.size(); ++k) pairs[columns.a[k]].bound = columns.gap[k];
+    columns.clear();
+  }
+}
+
+/// Finds the radii that a part's particles get, and those that have to be anchored besides.
+template <class Real>
+void share_part(std::span<const Index> particles, bool first, const GuardedPairs<Real>& pairs,
+                const Regions<Real>& regions, AnchorPart<Real>& part) {
+  part.radii.clear();
+  part.next.clear();
+  const std::span<const AnchorClaim<Real>> claims = part.claims;
+  for (std::size_t k = 0, begin = 0; k < particles.size(); ++k) {
+    const std::size_t end = part.ends[k];
+    part.radii.push_back(share_claims<Real>(particles[k], claims.subspan(begin, end - begin), first,
+                                            pairs, regions, part.next));
+    begin = end;
+  }
+}
+
+template <class Real>
+void end_anchoring(Index particle, Real radius, Regions<Real>& regions) {
+  Quad<Real>& sizes = regions.sizes[at_index(particle)];
+  sizes.lanes[kRadius] = radius;
+  sizes.lanes[kAhead] = -1;
+  sizes.lanes[kMoved] = 0;
 }
 
 /// Anchors the particles of a wave, and puts those of the next one in their place.
@@ -153,46 +230,33 @@ void move_anchors(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regi
 template <class Real>
 void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                  Regions<Real>& regions, Executor* executor, GuardCounts& counts) {
-  move_anchors(pairs, step, regions, counts);
+  move_anchors(step, regions, counts);
   std::vector<Index>& in_wave = regions.in_wave;
   const std::size_t count = in_wave.size(), parts = parts_of(count, kAnchoredAtLeast);
+  const std::span<const Index> wave = in_wave;
   run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
-    AnchorPart<Real>& part = regions.parts[n];
-    part.claims.clear();
-    part.ends.clear();
-    for (std::size_t k = from; k < to; ++k) list_claims(in_wave[k], pairs, step, regions, part);
-    measure_claimed(regions.anchor, part);
+    list_part(wave.subspan(from, to - from), pairs, regions, regions.parts[n]);
   });
-  run_parts(executor, count, parts, [&](std::size_t n, std::size_t, std::size_t) {
-    for (PairColumns<Real>& columns : regions.parts[n].columns) {
-      for (std::size_t k = 0; k < columns.size(); ++k) pairs[columns.a[k]].bound = columns.gap[k];
-      columns.clear();
-    }
-  });
+  run_parts(executor, count, parts,
+            [&](std::size_t n, std::size_t, std::size_t) { note_bounds(regions.parts[n], pairs); });
   run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
-    AnchorPart<Real>& part = regions.parts[n];
-    const std::span<const AnchorClaim<Real>> claims = part.claims;
-    for (std::size_t k = from, begin = 0; k < to; ++k) {
-      const std::size_t end = part.ends[k - from];
-      regions.radius[at_index(in_wave[k])] = share_claims<Real>(
-          in_wave[k], claims.subspan(begin, end - begin), first, pairs, step, regions, part.next);
-      begin = end;
-    }
+    share_part(wave.subspan(from, to - from), first, pairs, regions, regions.parts[n]);
   });
-  in_wave.clear();
-  for (std::size_t n = 0; n < parts; ++n) {
-    std::vector<Index>& next = regions.parts[n].next;
-    in_wave.insert(in_wave.end(), next.begin(), next.end());
-    next.clear();
+  const std::span<const AnchorPart<Real>> done(regions.parts.data(), parts);
+  std::size_t ended = 0;
+  for (const AnchorPart<Real>& part : done) {
+    for (const Real radius : part.radii) end_anchoring(wave[ended++], radius, regions);
   }
+  in_wave.clear();
+  for (const AnchorPart<Real>& part : done)
+    in_wave.insert(in_wave.end(), part.next.begin(), part.next.end());
   std::sort(in_wave.begin(), in_wave.end());
   in_wave.erase(std::unique(in_wave.begin(), in_wave.end()), in_wave.end());
 }
 
 /// Anchors and measures everything.
 template <class Real>
-void anchor_all(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions) {
-  ++regions.wave;
+void anchor_all(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions) {
   for (const Index k : pairs.active) {
     const auto i = at_index(k);
     if (regions.anchored_at[i] != step.number) regions.anchored.push_back(k);
@@ -216,19 +280,19 @@ void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
 }
 
 template <class Real>
-void share_all_gaps(const GuardedPairs<Real>& pairs, GuardedStep<Real>& step,
+void share_all_gaps(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
                     Regions<Real>& regions) {
-  step.measure_lengths();
+  measure_lengths(step, regions);
   for (const Index k : pairs.active)
-    regions.radius[at_index(k)] = std::numeric_limits<Real>::infinity();
+    regions.sizes[at_index(k)].lanes[kRadius] = std::numeric_limits<Real>::infinity();
   for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
-    share_gap(pair, step, regions, [](std::size_t) { return true; });
+    share_gap(pair, regions, [](std::size_t) { return true; });
   });
   regions.dirty.clear();
 }
 
 template <class Real>
-void admit_pairs(std::size_t first, GuardedStep<Real>& step, Executor* executor,
+void admit_pairs(std::size_t first, const GuardedStep<Real>& step, Executor* executor,
                  GuardedPairs<Real>& pairs, Regions<Real>& regions) {
   assert(first <= pairs.all.size());
   const auto is_new = [&](std::size_t i) { return !pairs.is_active[i]; };
@@ -237,7 +301,7 @@ void admit_pairs(std::size_t first, GuardedStep<Real>& step, Executor* executor,
       const auto i = at_index(k);
       if (!is_new(i)) continue;
       regions.anchor[i] = step.from[i];
-      regions.radius[i] = std::numeric_limits<Real>::infinity();
+      regions.sizes[i].lanes[kRadius] = std::numeric_limits<Real>::infinity();
     }
   });
   for (std::size_t k = first; k < pairs.all.size(); ++k)
@@ -248,12 +312,12 @@ void admit_pairs(std::size_t first, GuardedStep<Real>& step, Executor* executor,
       pairs[columns.a[k]].bound = columns.certified_gap(k, regions.anchor);
     columns.clear();
   }
-  step.measure_lengths();
+  measure_lengths(step, regions);
   for_pairs_from(pairs, first,
-                 [&](const GuardedPair<Real>& pair) { share_gap(pair, step, regions, is_new); });
+                 [&](const GuardedPair<Real>& pair) { share_gap(pair, regions, is_new); });
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
     const auto [one, other] =
-        largest_on_sides(pair, [&](std::size_t i) { return regions.radius[i]; });
+        largest_on_sides(pair, [&](std::size_t i) { return regions.radius(i); });
     if (one + other + regions.smallest_gap <= pair.bound) return;
     regions.dirty.insert(regions.dirty.end(), pair.particle.begin(), pair.particle.end());
   });
@@ -268,7 +332,7 @@ Real find_loose(const std::vector<Index>& active, const GuardedStep<Real>& step,
   for (const Index i : regions.dirty) regions.wave_of[at_index(i)] = regions.wave;
   for (const Index k : active) {
     const auto i = at_index(k);
-    const Real radius = regions.radius[i];
+    const Real radius = regions.radius(i);
     const Quad<Real> off = step.from[i] + step.displacement[i] - regions.anchor[i];
     const Real spare2 = radius * radius - dot(off, off);
     if (regions.wave_of[i] == regions.wave || !(spare2 >= 0)) regions.loose.push_back(k);
@@ -284,9 +348,9 @@ void measure(const Regions<Real>& regions, GuardedPair<Real>& pair) {
 }
 
 template <class Real>
-void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
+void anchor_loose(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions,
                   Executor* executor, GuardCounts& counts) {
-  step.measure_lengths();
+  measure_lengths(step, regions);
   regions.in_wave = regions.loose;
   for (int wave = 0; !regions.in_wave.empty(); ++wave) {
     stop_point();
@@ -294,7 +358,6 @@ void anchor_loose(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Re
       anchor_all(pairs, step, regions);
       return;
     }
-    ++regions.wave;
     anchor_wave(wave == 0, pairs, step, regions, executor, counts);
   }
 }
