@@ -29,10 +29,10 @@ struct Collision {
 
   bool empty() const { return !objects && !seed && !guard && !pins; }
 
-  /// Whether anything touches now.
+  /// Whether anything touches now, or was stopped before it did.
   bool touches(const ClothState<Real>& state) const {
-    return (objects && objects->touches(state.x)) || (guard && guard->presses()) ||
-           (seed && seed->touches());
+    return (objects && objects->touches(state.x)) ||
+           (guard && (guard->presses() || guard->stops())) || (seed && seed->touches());
   }
 
   /// Call before a kick, with the velocities of the last drift.

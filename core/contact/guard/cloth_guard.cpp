@@ -66,30 +66,6 @@ void forget(Regions<Real>& regions) {
 }
 
 template <class Real>
-void forget(CriticalSteps<Real>& critical) {
-  critical.pairs.clear();
-  critical.tight.clear();
-  std::fill(critical.is_tight.begin(), critical.is_tight.end(), 0);
-  std::fill(critical.fraction.begin(), critical.fraction.end(), Real(1));
-}
-
-template <class Real>
-void forget(GuardedPairs<Real>& pairs) {
-  for (std::vector<GuardedPair<Real>>* list : {&pairs.all, &pairs.arrived}) list->clear();
-  pairs.active.clear();
-  pairs.open_keys.clear();
-  pairs.open = 0;
-}
-
-template <class Real>
-void forget(PushOut<Real>& push) {
-  std::fill(push.extra.begin(), push.extra.end(), Quad<Real>());
-  std::fill(push.is_pushed.begin(), push.is_pushed.end(), 0);
-  push.particles.clear();
-  push.v.clear();
-}
-
-template <class Real>
 void forget(GuardedTangles<Real>& tangled) {
   tangled.tangles.reset();
   tangled.is_heap.assign(tangled.is_heap.size(), 0);
@@ -102,6 +78,7 @@ void forget(GuardedTangles<Real>& tangled) {
 template <class Real>
 ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
     : executor_(executor), cloths_(guarded_cloths(model)), search_(patch_search(model)),
+      stopped_(stopped_particles<Real>(model.mass.size())),
       making_(row_making<Real>(model.mass.size())), rows_(row_set<Real>(model.mass.size())),
       push_(push_out<Real>(model.mass.size())) {
   const std::size_t n = model.mass.size(), cloths = cloths_.particles_of.size();
@@ -132,10 +109,11 @@ void ClothGuard<Real>::reset() {
   forget_found(search_);
   forget(making_);
   forget(regions_);
-  forget(critical_);
+  forget_critical(critical_);
   forget_rows(rows_);
-  forget(pairs_);
-  forget(push_);
+  forget_pairs(pairs_);
+  forget_push(push_);
+  forget_stopped(stopped_);
   forget(tangled_);
   sweeps_.kicked = 0;
   sweeps_.upwards = false;
@@ -242,7 +220,9 @@ template <class Real>
 void ClothGuard<Real>::finish(ClothState<Real>& state) {
   assert(phase_ == GuardPhase::certified);
   phase_ = GuardPhase::between_steps;
+  give_velocities_back(stopped_, state.v);
   take_back_push(push_, state.v);
+  meet_at_planes(state.inverse_mass, stopped_, state.v);
 }
 
 template <class Real>
@@ -265,6 +245,7 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
   ++counts_.collections;
   regions_.smallest_gap = smallest_gap_at(step_.from);
   search_.motion.radius = cloths_.reach + regions_.smallest_gap;
+  search_.motion.margin = cloths_.margin;
   begin_paths(step_, awake_, dt, cloths_.reach, cloths_.finest, paths_);
   predict(Real(0), paths_, search_.motion);
   search_.boxes.forget();
@@ -364,12 +345,13 @@ void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile
     stop_crossings(pairs_, step_, regions_, critical_, executor_, counts_);
     profile[Stage::regions].work += counts_.anchored - before;
     truncate(pairs_, dt, cloths_.reach, attempt >= kRetries, critical_, step_, regions_, paths_,
-             state);
+             stopped_, state);
     slack_.left = 0;
     if (strays.empty()) return;
     if (attempt == kMostRetries) break;
   }
   // New pairs are looked for in the next step.
+  note_all_stopped(state.v, stopped_);
   step_.halt(pairs_.is_active, state.x, state.v);
   paths_.strays.clear();
   regions_.dirty.clear();

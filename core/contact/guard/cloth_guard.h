@@ -21,6 +21,7 @@
 #include "core/contact/guard/row_making.h"
 #include "core/contact/guard/row_set.h"
 #include "core/contact/guard/row_sweeps.h"
+#include "core/contact/guard/stopped_particles.h"
 #include "core/executor.h"
 #include "core/profile.h"
 
@@ -89,7 +90,7 @@ class ClothGuard {
   /// expected. All that they wanted in this step is lost.
   void stand_still();
 
-  /// After the drift: takes the push out of the velocities again.
+  /// After the drift: gives what was stopped its velocity back, and takes the push out again.
   void finish(ClothState<Real>& state);
 
   /// Paths along which nothing can meet, for steps without the calls above; null if there are none.
@@ -127,6 +128,8 @@ class ClothGuard {
   const std::vector<GuardRow<Real>>& rows() const { return rows_.all; }
   /// Whether any cloth pressed against itself or another in the last step.
   bool presses() const { return rows_.deals.pushes(); }
+  /// Whether its certificate stopped any particle in the last step.
+  bool stops() const { return stopped_.any; }
   /// Time of the forces that the rows' impulses stand against [s].
   Real kicked() const { return sweeps_.kicked; }
   /// Pairs about which nothing is promised: features that cross or touch since the start, and
@@ -164,6 +167,7 @@ class ClothGuard {
   // Certify.
   Regions<Real> regions_;
   CriticalSteps<Real> critical_;
+  StoppedParticles<Real> stopped_;
   Slack<Real> slack_;
   CalmSteps<Real> calm_;
   // Solve.

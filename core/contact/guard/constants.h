@@ -18,9 +18,21 @@ inline constexpr double kMeshCell = 0.8;
 /// become pairs; beyond the upper bound all neighbours do. Smaller: paths are renewed more often.
 inline constexpr double kReachPart = 0.65, kMostReach = 0.28, kLeastReach = 0.1;
 
-/// Paths hold while the mean particle moves by this fraction of an edge [1], but neither longer
-/// than these seconds nor shorter than these substeps. Larger: fewer collections, of more pairs.
-inline constexpr double kHorizonPart = 0.14, kLongestHorizon = 0.25, kFewestSubsteps = 4;
+/// What is far apart in the fabric is found at twice this fraction of the thickness, even if that
+/// is farther than the balls meet [1]: what is first found when it is pressed already is pushed
+/// out, lost from sight, and never rests. Larger: more pairs of thick cloth that keep off anyway.
+/// Smaller: cloth thicker than half an edge is found late.
+inline constexpr double kSightPart = 0.55;
+
+/// Features that are near in the fabric keep no more than this many radii of the balls [1], which
+/// are found at twice the radius. Larger: see above. Smaller: tight folds of thick cloth close.
+inline constexpr double kSeenPart = 1.65;
+
+/// Paths hold while the mean particle moves by the first fraction of an edge or the second of the
+/// balls' radius [1], but neither longer than these seconds nor shorter than these substeps.
+/// Larger: fewer collections, of more pairs.
+inline constexpr double kHorizonPart = 0.14, kHorizonReach = 0.86, kLongestHorizon = 0.25,
+                        kFewestSubsteps = 4;
 
 /// While something crosses it is examined again after this time [s]. Larger: what comes apart is
 /// pulled for longer. Smaller: more collections while a tangle lasts.
@@ -85,6 +97,10 @@ inline constexpr double kDiagonal = 1.7321;
 /// Particles stop this much before their plane, as a fraction of their displacement [1]. Larger:
 /// more motion is lost. Smaller: rounding could carry one over its plane.
 inline constexpr double kStopShort = 1e-4;
+
+/// Rounds in which pairs that were stopped take their approach from each other. More: what they
+/// leave of it, for the rows of the next step, is less. Fewer: less work where much is stopped.
+inline constexpr int kMostMeetings = 8;
 
 // Tangles.
 

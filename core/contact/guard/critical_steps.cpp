@@ -163,6 +163,7 @@ void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<
     const PairSeparation<Real> s = separate_pair(pair.kind, points_of(pair, step.from));
     c.normal = s.normal;
     c.gap = s.gap;
+    c.weight = s.weight;
   }
   const Real smallest_gap = regions.smallest_gap;
   for (int round = 0;; ++round) {
@@ -182,7 +183,8 @@ void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<
 template <class Real>
 void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
               CriticalSteps<Real>& critical, GuardedStep<Real>& step, Regions<Real>& regions,
-              PredictedPaths<Real>& paths, ClothState<Real>& state) {
+              PredictedPaths<Real>& paths, StoppedParticles<Real>& stopped,
+              ClothState<Real>& state) {
   assert(dt > 0);
   paths.strays.clear();
   ++regions.wave;
@@ -202,9 +204,12 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
     if (off_path) paths.strays.push_back(k);
     step.displacement[i] = off_path && stay ? Quad<Real>() : allowed;
     state.x[i] = to_vector(step.from[i]);
-    state.v[i] = to_vector(step.displacement[i]) / dt;
+    const Vec3<Real> v_drift = to_vector(step.displacement[i]) / dt;
+    note_stopped(k, state.v[i], v_drift, stopped);
+    state.v[i] = v_drift;
   };
   for (const CriticalPair<Real>& c : critical.pairs) {
+    if (c.fixed) stopped.pairs.push_back({pairs[c.pair].particle, c.weight, c.normal});
     for (const Index k : pairs[c.pair].particle) visit(k);
   }
   for (const Index k : critical.tight) visit(k);
@@ -212,6 +217,14 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
   critical.tight.clear();
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(stop_crossings, truncate)
+template <class Real>
+void forget_critical(CriticalSteps<Real>& critical) {
+  critical.pairs.clear();
+  critical.tight.clear();
+  std::fill(critical.is_tight.begin(), critical.is_tight.end(), 0);
+  std::fill(critical.fraction.begin(), critical.fraction.end(), Real(1));
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(forget_critical, stop_crossings, truncate)
 
 }  // namespace weft

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
@@ -7,6 +8,7 @@
 #include "core/contact/guard/guarded_step.h"
 #include "core/contact/guard/predicted_paths.h"
 #include "core/contact/guard/regions.h"
+#include "core/contact/guard/stopped_particles.h"
 #include "core/executor.h"
 #include "core/types.h"
 
@@ -19,8 +21,9 @@ template <class Real>
 struct CriticalPair {
   Index pair = kNone;
   Vec3<Real> normal = Vec3<Real>::Zero();
-  Real gap = 0;        ///< along the normal [m]
-  bool fixed = false;  ///< stopped at planes
+  Real gap = 0;                               ///< along the normal [m]
+  std::array<Real, 4> weight = {0, 0, 0, 0};  ///< of the closest points
+  bool fixed = false;                         ///< stopped at planes
 };
 
 /// What one step had no region for.
@@ -38,14 +41,19 @@ template <class Real>
 void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
                     CriticalSteps<Real>& critical, Executor* executor, GuardCounts& counts);
 
-/// Applies to the state what was not allowed. Particles stopped off their predicted paths are
-/// listed as strays, which ask for pairs around a new one; what the others may do then is examined
-/// anew.
+/// Applies to the state what was not allowed, for the coming drift. Particles stopped off their
+/// predicted paths are listed as strays, which ask for pairs around a new one; what the others may
+/// do then is examined anew.
 /// @param reach  radius of the balls around paths [m]
 /// @param stay   strays stay where they are, so that none is stopped a second time
 template <class Real>
 void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
               CriticalSteps<Real>& critical, GuardedStep<Real>& step, Regions<Real>& regions,
-              PredictedPaths<Real>& paths, ClothState<Real>& state);
+              PredictedPaths<Real>& paths, StoppedParticles<Real>& stopped,
+              ClothState<Real>& state);
+
+/// Forgets what was found in a step that was ended from outside; keeps the memory.
+template <class Real>
+void forget_critical(CriticalSteps<Real>& critical);
 
 }  // namespace weft

@@ -43,6 +43,16 @@ Real cell_of(const ClothModel<Real>& model, const ClothPart<Real>& part) {
   return static_cast<Real>(cell);
 }
 
+/// Whether features of one cloth may be near in the fabric.
+/// @param i, j       a particle of either
+/// @param thickness  of the cloth [m]
+template <class Real>
+bool may_be_near(const GuardedCloths<Real>& cloths, Index i, Index j, Real thickness, Index cloth) {
+  const Real near = 2 * thickness + 2 * cloths.cell[at_index(cloth)];
+  const Quad<Real> apart = cloths.rest_positions[at_index(i)] - cloths.rest_positions[at_index(j)];
+  return dot(apart, apart) <= near * near;
+}
+
 }  // namespace
 
 template <class Real>
@@ -68,6 +78,7 @@ GuardedCloths<Real> guarded_cloths(const ClothModel<Real>& model) {
   }
   cloths.reach = std::min(cloths.thickest * Real(kReachPart), cloths.finest * Real(kMostReach));
   cloths.reach = std::max(cloths.reach, cloths.finest * Real(kLeastReach));
+  cloths.margin = std::max(Real(0), cloths.thickest * Real(kSightPart) - cloths.reach);
   return cloths;
 }
 
@@ -85,10 +96,18 @@ Real kept_distance(const GuardedCloths<Real>& cloths, const GuardedPair<Real>& p
   Real distance = (cloths.thickness[at_index(p)] + cloths.thickness[at_index(q)]) / 2;
   if (pair.kind == PairKind::edge_edge) distance *= Real(kEdgeRadius);
   if (p != q) return distance;
+  if (!may_be_near(cloths, pair.particle[0], pair.particle[2], distance, p)) return distance;
   const PairPoints<Real> rest = points_of(pair, cloths.rest_positions);
-  const Real near = 2 * distance + 2 * cloths.cell[at_index(p)];
-  if ((rest[0] - rest[2]).squaredNorm() > near * near) return distance;
-  return std::min(distance, separate_pair(pair.kind, rest).gap * Real(kFabricPart));
+  return std::min({distance, separate_pair(pair.kind, rest).gap * Real(kFabricPart),
+                   cloths.reach * Real(kSeenPart)});
+}
+
+template <class Real>
+Real seen_from(const GuardedCloths<Real>& cloths, const std::array<Index, 4>& particles) {
+  const Index p = cloth_of(cloths, particles[0]), q = cloth_of(cloths, particles[2]);
+  const Real thickness = (cloths.thickness[at_index(p)] + cloths.thickness[at_index(q)]) / 2;
+  if (p == q && may_be_near(cloths, particles[0], particles[2], thickness, p)) return 0;
+  return thickness * Real(2 * kSightPart);
 }
 
 template <class Real>
@@ -120,6 +139,6 @@ bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, I
                       [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(guarded_cloths, cloth_of, kept_distance, owns_nearest)
+WEFT_INSTANTIATE_FUNCTIONS(guarded_cloths, cloth_of, seen_from, kept_distance, owns_nearest)
 
 }  // namespace weft

@@ -29,6 +29,9 @@ struct GuardedCloths {
   Real thickest = 0;               ///< largest thickness [m]
   Real finest = 0;                 ///< smallest cell [m]
   Real reach = 0;                  ///< radius of the balls around predicted paths [m]
+  /// The balls of pairs that are far apart in the fabric count as wider by this, so that thick
+  /// cloth has their rows before it is pressed [m].
+  Real margin = 0;
 };
 
 template <class Real>
@@ -37,6 +40,11 @@ GuardedCloths<Real> guarded_cloths(const ClothModel<Real>& model);
 /// The cloth that a particle belongs to.
 template <class Real>
 Index cloth_of(const GuardedCloths<Real>& cloths, Index particle);
+
+/// Distance up to which a pair is found even if its balls do not meet [m]; 0 if its features are so
+/// near in the fabric that the fabric itself holds them apart.
+template <class Real>
+Real seen_from(const GuardedCloths<Real>& cloths, const std::array<Index, 4>& particles);
 
 /// Distance that the features of a pair keep [m]: the mean of their thicknesses, but no more than
 /// the fabric leaves to neighbours.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
 template <class Real>
@@ -105,6 +107,15 @@ void GuardedPairs<Real>::note_arrivals(std::size_t first) {
   });
 }
 
+template <class Real>
+void forget_pairs(GuardedPairs<Real>& pairs) {
+  for (std::vector<GuardedPair<Real>>* list : {&pairs.all, &pairs.arrived}) list->clear();
+  pairs.active.clear();
+  pairs.open_keys.clear();
+  pairs.open = 0;
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(forget_pairs)
 template struct GuardedPairs<float>;
 template struct GuardedPairs<double>;
 

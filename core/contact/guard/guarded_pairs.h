@@ -137,6 +137,10 @@ void for_pairs_from(Pairs& pairs, std::size_t first, Visit&& visit) {
   }
 }
 
+/// Forgets all pairs; keeps the memory.
+template <class Real>
+void forget_pairs(GuardedPairs<Real>& pairs);
+
 extern template struct GuardedPairs<float>;
 extern template struct GuardedPairs<double>;
 

@@ -104,7 +104,7 @@ void PatchBoxes<Real>::fit(Index p, const Patch& patch, const PredictedMotion<Re
     QuadBox<Real> box;
     box.add(motion.start[i]);
     box.add(motion.end[i]);
-    corner[k] = box.grown(motion.radius);
+    corner[k] = box.grown(motion.radius + motion.margin);
     whole.add(corner[k]);
     bits |= static_cast<std::uint32_t>(changed[i] != 0) << k;
   }

@@ -48,15 +48,20 @@ void fit_near_patches(PatchSearch<Real>& search, Executor* executor) {
 /// Keeps pairs unless one axis separates the balls of their particles at both ends of the motion,
 /// and therefore all along.
 template <class Real>
-void keep_near(const PredictedMotion<Real>& motion, const ClothTangles<Real>& tangles,
-               PairColumns<Real>& columns, std::vector<GuardedPair<Real>>& found) {
+void keep_near(const PredictedMotion<Real>& motion, const GuardedCloths<Real>& cloths,
+               const ClothTangles<Real>& tangles, PairColumns<Real>& columns,
+               std::vector<GuardedPair<Real>>& found) {
   separate_pairs(motion.start, motion.end, columns);
-  const Real apart = 2 * motion.radius;
+  const Real meet = 2 * motion.radius, widest = meet + 2 * motion.margin;
+  const auto beyond = [&](std::size_t k, Real apart) {
+    return columns.gap[k] > apart && columns.end_gap[k] > apart;
+  };
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    if (columns.gap[k] > apart && columns.end_gap[k] > apart) continue;
+    if (beyond(k, widest)) continue;
     GuardedPair<Real> pair;
     pair.kind = columns.kind;
     for (std::size_t n = 0; n < 4; ++n) pair.particle[n] = columns.particle[n][k];
+    if (motion.margin > 0 && beyond(k, std::max(meet, seen_from(cloths, pair.particle)))) continue;
     pair.a = columns.a[k];
     pair.b = columns.b[k];
     pair.bound = columns.certified_gap(k, motion.start);
@@ -82,7 +87,8 @@ void test_pair(const SearchPass<Real>& pass, PairKind kind, Index a, Index b,
   PairColumns<Real>& columns = pass.part.columns[kind];
   columns.add(a, b, particle);
   if (columns.size() >= kPairsAtOnce)
-    keep_near(pass.search.motion, pass.left_out.tangled.tangles, columns, pass.part.found);
+    keep_near(pass.search.motion, pass.cloths, pass.left_out.tangled.tangles, columns,
+              pass.part.found);
 }
 
 /// Particles of one patch against triangles of another one.
@@ -199,7 +205,7 @@ void test_near_patches(PatchSearch<Real>& search, const GuardedCloths<Real>& clo
       test_patches(pass, search.near[k].first, search.near[k].second);
     }
     for (PairColumns<Real>& columns : pass.part.columns)
-      keep_near(search.motion, left_out.tangled.tangles, columns, pass.part.found);
+      keep_near(search.motion, cloths, left_out.tangled.tangles, columns, pass.part.found);
   });
   for (std::size_t n = 0; n < parts; ++n) {
     PairSearch<Real>& part = search.parts[n];

@@ -232,7 +232,7 @@ void PatchTree<Real>::fit_box(Node& node, const PredictedMotion<Real>& motion) c
     node.box.add(motion.start[at_index(i)]);
     node.box.add(motion.end[at_index(i)]);
   }
-  node.box = node.box.grown(motion.radius);
+  node.box = node.box.grown(motion.radius + motion.margin);
 }
 
 template <class Real>

@@ -17,6 +17,7 @@ template <class Real>
 struct PredictedMotion {
   QuadArray<Real> start, end;  ///< positions at both ends of the stretch [m]
   Real radius = 0;             ///< of the balls [m]
+  Real margin = 0;             ///< by which boxes are wider than the balls [m]
 };
 
 /// A patch of a grid is at most this many cells wide. Wider: fewer boxes, and more features in

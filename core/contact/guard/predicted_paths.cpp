@@ -54,7 +54,8 @@ void begin_paths(const GuardedStep<Real>& step, const AwakeParticles& awake, Rea
   });
   const Real speed = std::sqrt(mean_squares[0] + mean_squares[1] + mean_squares[2]) / dt;
   const Real shortest = dt * Real(kFewestSubsteps);
-  paths.horizon = std::clamp(finest * Real(kHorizonPart) / std::max(speed, Real(1e-6)), shortest,
+  const Real way = std::max(finest * Real(kHorizonPart), reach * Real(kHorizonReach));
+  paths.horizon = std::clamp(way / std::max(speed, Real(1e-6)), shortest,
                              std::max(static_cast<Real>(kLongestHorizon), shortest));
   for (std::size_t i = 0; i < step.from.size(); ++i)
     paths.velocity[i] = path_velocity(paths, step, i, dt, reach);

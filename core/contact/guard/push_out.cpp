@@ -79,6 +79,14 @@ void take_back_push(PushOut<Real>& push, Vec3Array<Real>& v) {
   push.v.clear();
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(push_out, add_push, take_back_push)
+template <class Real>
+void forget_push(PushOut<Real>& push) {
+  std::fill(push.extra.begin(), push.extra.end(), Quad<Real>());
+  std::fill(push.is_pushed.begin(), push.is_pushed.end(), 0);
+  push.particles.clear();
+  push.v.clear();
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(forget_push, push_out, add_push, take_back_push)
 
 }  // namespace weft

@@ -32,4 +32,8 @@ void add_push(RowSet<Real>& rows, PushOut<Real>& push, Vec3Array<Real>& v, Execu
 template <class Real>
 void take_back_push(PushOut<Real>& push, Vec3Array<Real>& v);
 
+/// Forgets a push that was not taken back; keeps its memory.
+template <class Real>
+void forget_push(PushOut<Real>& push);
+
 }  // namespace weft

@@ -1,0 +1,94 @@
+// Returns what a certificate has stopped for one drift, less what pairs take from each other.
+
+#include "core/contact/guard/stopped_particles.h"
+
+#include <algorithm>
+#include <cassert>
+
+#include "core/contact/guard/constants.h"
+#include "core/instantiate.h"
+
+namespace weft {
+namespace {
+
+/// Takes the approach from one pair. @return by how much its normal velocity changed [m/s]
+template <class Real>
+Real meet(const StoppedPair<Real>& pair, const std::vector<Real>& inverse_mass,
+          Vec3Array<Real>& v) {
+  Real approach = 0, mobility = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto i = at_index(pair.particle[k]);
+    approach -= pair.weight[k] * pair.normal.dot(v[i]);
+    mobility += pair.weight[k] * pair.weight[k] * inverse_mass[i];
+  }
+  if (!(approach > 0 && mobility > 0)) return 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto i = at_index(pair.particle[k]);
+    v[i] += pair.normal * (pair.weight[k] * inverse_mass[i] * approach / mobility);
+  }
+  return approach;
+}
+
+}  // namespace
+
+template <class Real>
+StoppedParticles<Real> stopped_particles(std::size_t particles) {
+  StoppedParticles<Real> stopped;
+  stopped.place_of.assign(particles, kNone);
+  return stopped;
+}
+
+template <class Real>
+void note_stopped(Index particle, const Vec3<Real>& v, const Vec3<Real>& v_drift,
+                  StoppedParticles<Real>& stopped) {
+  assert(at_index(particle) < stopped.place_of.size());
+  Index& place = stopped.place_of[at_index(particle)];
+  if (place == kNone) {
+    place = static_cast<Index>(stopped.list.size());
+    stopped.list.push_back({particle, v, v_drift});
+  }
+  stopped.list[at_index(place)].v_drift = v_drift;
+}
+
+template <class Real>
+void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v) {
+  stopped.any = !stopped.list.empty();
+  for (const StoppedParticle<Real>& one : stopped.list) {
+    const auto i = at_index(one.particle);
+    if (v[i] == one.v_drift) v[i] = one.v;
+    stopped.place_of[i] = kNone;
+  }
+  stopped.list.clear();
+}
+
+template <class Real>
+void meet_at_planes(const std::vector<Real>& inverse_mass, StoppedParticles<Real>& stopped,
+                    Vec3Array<Real>& v) {
+  for (int round = 0; round < kMostMeetings; ++round) {
+    Real largest = 0;
+    for (const StoppedPair<Real>& pair : stopped.pairs)
+      largest = std::max(largest, meet(pair, inverse_mass, v));
+    if (!(largest > 0)) break;
+  }
+  stopped.pairs.clear();
+}
+
+template <class Real>
+void forget_stopped(StoppedParticles<Real>& stopped) {
+  stopped.list.clear();
+  stopped.pairs.clear();
+  stopped.any = false;
+  std::fill(stopped.place_of.begin(), stopped.place_of.end(), kNone);
+}
+
+template <class Real>
+void note_all_stopped(const Vec3Array<Real>& v, StoppedParticles<Real>& stopped) {
+  assert(v.size() == stopped.place_of.size());
+  for (std::size_t i = 0; i < v.size(); ++i)
+    note_stopped<Real>(static_cast<Index>(i), v[i], Vec3<Real>::Zero(), stopped);
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(forget_stopped, note_all_stopped, stopped_particles, note_stopped,
+                           give_velocities_back, meet_at_planes)
+
+}  // namespace weft

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/contact/guard/guarded_pairs.h"
+#include "core/types.h"
+
+// Particles that a certificate stops short of where they wanted to go.
+
+namespace weft {
+
+/// Two features whose particles were stopped at planes between them.
+template <class Real>
+struct StoppedPair {
+  std::array<Index, 4> particle = {0, 0, 0, 0};
+  std::array<Real, 4> weight = {0, 0, 0, 0};  ///< of the closest points, as PairSeparation has it
+  Vec3<Real> normal = Vec3<Real>::Zero();     ///< from the second side to the first
+};
+
+/// A particle that goes less far in the coming drift than its velocity says.
+template <class Real>
+struct StoppedParticle {
+  Index particle = 0;
+  Vec3<Real> v = Vec3<Real>::Zero();        ///< its velocity [m/s]
+  Vec3<Real> v_drift = Vec3<Real>::Zero();  ///< and that of the drift [m/s]
+};
+
+/// What is stopped is stopped for one drift. To take its velocity for good would take momentum that
+/// no other particle gets, also along the contact and from what both sides have in common; so each
+/// particle gets its velocity back after the drift, and then the pairs at whose planes it stopped
+/// take their approach from each other.
+template <class Real>
+struct StoppedParticles {
+  std::vector<StoppedParticle<Real>> list;
+  std::vector<Index> place_of;  ///< of each particle in the list, or kNone
+  std::vector<StoppedPair<Real>> pairs;
+  bool any = false;  ///< something was stopped in the last step
+};
+
+/// @param particles  number of all
+template <class Real>
+StoppedParticles<Real> stopped_particles(std::size_t particles);
+
+/// Notes that a particle is stopped, perhaps once more.
+/// @param v        its velocity when it was stopped first [m/s]
+/// @param v_drift  in the coming drift [m/s]
+template <class Real>
+void note_stopped(Index particle, const Vec3<Real>& v, const Vec3<Real>& v_drift,
+                  StoppedParticles<Real>& stopped);
+
+/// Gives the particles their velocities back after the drift. One whose velocity is no longer that
+/// of the drift keeps it: something else has stopped it too.
+template <class Real>
+void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v);
+
+/// Lets the stopped pairs take the velocity of their approach from each other, without a bounce:
+/// impulses along their normals, which keep momentum and take energy. Forgets all that was stopped.
+template <class Real>
+void meet_at_planes(const std::vector<Real>& inverse_mass, StoppedParticles<Real>& stopped,
+                    Vec3Array<Real>& v);
+
+/// Notes that no particle moves in the coming drift.
+/// @param v  their velocities [m/s]
+template <class Real>
+void note_all_stopped(const Vec3Array<Real>& v, StoppedParticles<Real>& stopped);
+
+/// Forgets all that was stopped; keeps the memory.
+template <class Real>
+void forget_stopped(StoppedParticles<Real>& stopped);
+
+}  // namespace weft
