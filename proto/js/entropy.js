@@ -11,21 +11,28 @@ const CHECK_EVERY = 64; // values between two looks at the cursors
 const PADDING = 3 * CHECK_EVERY + 8; // they take at most 2 coded and 3 raw bytes each
 const LAST_CLASS = 251; // sums from here on are of the last context
 
-const CONTEXT_OF = new Uint8Array(LAST_CLASS + 1);
-for (let sum = 0; sum <= LAST_CLASS; ++sum)
-  CONTEXT_OF[sum] = [0, 1, 2, 4, 8, 16, 40, 100, 250, Infinity].findIndex((most) => sum <= most);
+const UNUSED = -(2 ** 31); // marks the slots of a context that does not occur
+
+/** Where the slots of the context of a sum begin. */
+const TABLE_OF = new Int32Array(LAST_CLASS + 1);
+for (let sum = 0; sum <= LAST_CLASS; ++sum) {
+  const context = [0, 1, 2, 4, 8, 16, 40, 100, 250, Infinity].findIndex((most) => sum <= most);
+  TABLE_OF[sum] = context * SLOTS;
+}
+const LAST_TABLE = TABLE_OF[LAST_CLASS];
 
 /**
  * Places of vertices in coding order, and of their neighbours; a missing one is the number of
- * vertices.
- * @typedef {{vertices: Uint32Array, a: Uint32Array, b: Uint32Array, c: Uint32Array}} Order
+ * vertices. If all cloths are grids: from where to where each goes, row by row.
+ * @typedef {{first: number, end: number, columns: number}} Grid
+ * @typedef {{vertices: Uint32Array, a: Uint32Array, b: Uint32Array, c: Uint32Array,
+ *   grids: Grid[] | null}} Order
  */
 
 export class EntropyDecoder {
-  #tokens = new Uint8Array(CONTEXTS * SLOTS); // of each slot
-  // Of each token, the frequency, and those below it added up, from bit 16 on.
-  #shares = new Int32Array(CONTEXTS * 64);
-  #used = new Uint8Array(CONTEXTS);
+  // Of each slot its token from bit 24 on, the frequencies below that added up from bit 12 on, and
+  // its own less one, so that one look tells all.
+  #slots = new Int32Array(CONTEXTS * SLOTS);
   #buffer = new Uint8Array(0);
   #words = new DataView(this.#buffer.buffer);
   // Where reading stands.
@@ -98,7 +105,8 @@ export class EntropyDecoder {
     demand(at < end, 'a table is cut off');
     const count = bytes[at++];
     demand(count <= MOST_TOKENS, 'too many tokens');
-    this.#used[context] = count > 0 ? 1 : 0;
+    const table = context * SLOTS;
+    if (count === 0) this.#slots.fill(UNUSED, table, table + SLOTS);
     let start = 0;
     for (let token = 0; token < count; ++token) {
       demand(at < end, 'a table is cut off');
@@ -108,8 +116,8 @@ export class EntropyDecoder {
         f = (f & 127) | (bytes[at++] << 7);
       }
       demand(f <= SLOTS - start, 'frequencies are too large');
-      this.#shares[context * 64 + token] = f | (start << 16);
-      this.#tokens.fill(token, context * SLOTS + start, context * SLOTS + start + f);
+      if (f === 0) continue;
+      this.#slots.fill((token << 24) | (start << 12) | (f - 1), table + start, table + start + f);
       start += f;
     }
     demand(count === 0 || start === SLOTS, 'frequencies do not add up');
@@ -124,27 +132,27 @@ export class EntropyDecoder {
    */
   #decodePlane(codedEnd, bitEnd, { vertices, a, b }, residuals) {
     const count = vertices.length;
-    const tokens = this.#tokens;
-    const shares = this.#shares;
-    const used = this.#used;
+    const slots = this.#slots;
     const buffer = this.#buffer;
     const words = this.#words;
     let now = this.#now;
     let next = this.#next;
     let coded = this.#coded;
     let bit = this.#bit;
+    let unused = 0; // negative once a slot was
     residuals[count] = 0;
     for (let begin = 0; begin < count; begin += CHECK_EVERY) {
       const end = Math.min(count, begin + CHECK_EVERY);
       for (let i = begin; i < end; ++i) {
         // Residuals stay below 2^25, so that their sum is a small integer.
         const around = residuals[a[i]] + residuals[b[i]];
-        const context = around < LAST_CLASS ? CONTEXT_OF[around] : CONTEXTS - 1;
-        demand(used[context] === 1, 'a context that does not occur');
+        const table = around < LAST_CLASS ? TABLE_OF[around] : LAST_TABLE;
         const slot = now & (SLOTS - 1);
-        const token = tokens[(context << 12) | slot];
-        const share = shares[(context << 6) | token];
-        let x = Math.imul(share & 0xffff, now >>> 12) + slot - (share >> 16);
+        const share = slots[table | slot];
+        unused |= share;
+        const token = (share >> 24) & 63;
+        const below = (share >> 12) & (SLOTS - 1);
+        let x = (Math.imul((share & (SLOTS - 1)) + 1, now >>> 12) + slot - below) | 0;
         // Whether a byte is due is as good as random, so that a branch would cost more than this:
         // all ones if it is. A second one is rare.
         const due = (x - STATE_LOW) >> 31;
@@ -162,6 +170,7 @@ export class EntropyDecoder {
         }
         residuals[i] = value;
       }
+      demand(unused >= 0, 'a context that does not occur');
       demand(coded <= codedEnd && bit <= bitEnd, 'the packed positions are cut off');
     }
     this.#now = now;

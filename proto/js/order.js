@@ -4,7 +4,10 @@ import { demand } from './bytes.js';
 
 const MISSING = 0xffffffff;
 
-/** @typedef {import('./entropy.js').Order} Order */
+/**
+ * @typedef {import('./entropy.js').Order} Order
+ * @typedef {{first_vertex: number, vertices: number, rows?: number, columns?: number}} Cloth
+ */
 
 /**
  * @param {number} count
@@ -13,7 +16,7 @@ const MISSING = 0xffffffff;
 function emptyOrder(count) {
   const vertices = new Uint32Array(count);
   const [a, b, c] = [0, 1, 2].map(() => new Uint32Array(count).fill(count));
-  return { vertices, a, b, c };
+  return { vertices, a, b, c, grids: null };
 }
 
 /**
@@ -42,16 +45,21 @@ export function readOrder(words) {
   return order;
 }
 
+/** @param {Cloth} cloth */
+function gridOf({ first_vertex: first, vertices, columns = 0 }) {
+  return { first, end: first + vertices, columns };
+}
+
 /**
  * The order of a mesh, as announced and as sent.
- * @param {{first_vertex: number, vertices: number, rows?: number, columns?: number}[]} cloths
+ * @param {Cloth[]} cloths
  * @param {{restPositions: Float32Array, order: Uint32Array | null}} data
  * @returns {Order}
  */
 export function orderOf(cloths, data) {
   if (data.order) return readOrder(data.order);
   const count = data.restPositions.length / 3;
-  const order = emptyOrder(count);
+  const order = { ...emptyOrder(count), grids: cloths.map(gridOf) };
   let place = 0;
   for (const { first_vertex: first, vertices, rows = 0, columns = 0 } of cloths) {
     const grid = first === place && place + vertices <= count && rows * columns === vertices;

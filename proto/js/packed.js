@@ -4,16 +4,12 @@
 import { demand, demandFinite } from './bytes.js';
 import { decodeFrame } from './codec.js';
 import { EntropyDecoder } from './entropy.js';
+import { BLEND, STRAIGHT, addEarlier, addNeighbours } from './prediction.js';
 
 const FIXED_BYTES = 20;
 const KEY_BYTES = FIXED_BYTES + 24;
 const MOST_STEPS = 2 ** 20;
 const SURELY_FINITE = 1e38; // coordinates below are finite as float32 too
-const STEP = 1;
-const STRAIGHT = 2;
-const MEAN = 1;
-const CORNER = 2;
-const BLEND = 3;
 
 /**
  * @typedef {import('./entropy.js').Order} Order
@@ -50,51 +46,6 @@ function readPayload(bytes, key) {
     origin,
     coded: bytes.subarray(key ? KEY_BYTES : FIXED_BYTES),
   };
-}
-
-/** @param {number} v */
-const unzigzag = (v) => (v >>> 1) ^ -(v & 1);
-
-/**
- * Residuals to differences, in place; arithmetic is modulo 2^32. Neighbours come before.
- * @param {number} neighbours
- * @param {Order} order
- * @param {Int32Array} values  of one component
- */
-function addNeighbours(neighbours, { vertices, a, b, c }, values) {
-  // A loop for each, because engines leave the choice inside.
-  const count = vertices.length;
-  if (neighbours === CORNER) {
-    for (let i = 0; i < count; ++i)
-      values[i] = unzigzag(values[i]) + values[a[i]] + values[b[i]] - values[c[i]];
-  } else if (neighbours === MEAN) {
-    for (let i = 0; i < count; ++i) {
-      const sum = (values[a[i]] + values[b[i]]) | 0;
-      values[i] = unzigzag(values[i]) + (b[i] === count ? sum : sum >> 1);
-    }
-  } else if (neighbours === BLEND) {
-    for (let i = 0; i < count; ++i) {
-      const sum = (values[a[i]] + values[b[i]]) | 0;
-      const blend = (Math.imul(3, sum) - (values[c[i]] << 1) + 2) >> 2;
-      values[i] = unzigzag(values[i]) + (b[i] === count ? sum : blend);
-    }
-  } else {
-    for (let i = 0; i < count; ++i) values[i] = unzigzag(values[i]);
-  }
-}
-
-/**
- * Adds what was expected from earlier frames.
- * @param {number} base
- * @param {Int32Array} values
- * @param {Int32Array} last
- * @param {Int32Array} before
- */
-function addEarlier(base, values, last, before) {
-  const count = values.length;
-  if (base === STEP) for (let i = 0; i < count; ++i) values[i] = values[i] + last[i];
-  if (base !== STRAIGHT) return;
-  for (let i = 0; i < count; ++i) values[i] = values[i] + (last[i] << 1) - before[i];
 }
 
 /** Decodes the frames of one mesh in either codec, in the order in which they were sent. */
