@@ -113,13 +113,24 @@ const proto::Crossings& GuaranteeWatch<Real>::count(const World<Real>& world) {
 }
 
 template <class Real>
-bool GuaranteeWatch<Real>::count_if_due(const World<Real>& world) {
+bool GuaranteeWatch<Real>::is_due() const {
   const std::uint32_t pause =
       bad_starts_.what.empty() || meetings_.empty() ? pause_ : kPauseWhileThrough;
   const bool may = clock_() >= next_count_;
-  const bool due = pause != 0 && uncounted_ >= pause && may;
+  if (pause != 0 && uncounted_ >= pause && may) return true;
   // Particles moved by the scene bypass contact, which then knows of no start.
-  if (!due && (!displaced_ || (unfinished_ && !may))) return false;
+  return displaced_ && (!unfinished_ || may);
+}
+
+template <class Real>
+bool GuaranteeWatch<Real>::is_stale() const {
+  if (pause_ == 0 || uncounted_ == 0) return false;
+  return !unfinished_ || clock_() >= next_count_;
+}
+
+template <class Real>
+bool GuaranteeWatch<Real>::count_if_due(const World<Real>& world) {
+  if (!is_due()) return false;
   const bool unknown = unfinished_;
   const std::uint64_t before = crossings_ ? crossings_->count : 0;
   return count(world).count != before || unknown;
@@ -127,8 +138,7 @@ bool GuaranteeWatch<Real>::count_if_due(const World<Real>& world) {
 
 template <class Real>
 bool GuaranteeWatch<Real>::count_if_stale(const World<Real>& world) {
-  if (pause_ == 0 || uncounted_ == 0) return false;
-  if (unfinished_ && clock_() < next_count_) return false;
+  if (!is_stale()) return false;
   count(world);
   return true;
 }

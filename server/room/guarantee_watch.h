@@ -35,6 +35,9 @@ class GuaranteeWatch {
 
   /// Call after a tick that changed the cloth or an object.
   void note_tick(const World<Real>& world);
+  /// Whether `count_if_due`, or `count_if_stale`, would count now.
+  bool is_due() const;
+  bool is_stale() const;
   /// Counts if a count is due.
   /// @returns whether more is known, or another number of crossings. A stop signal of the thread
   /// that ends a count makes it, and the others, throw Stopped.

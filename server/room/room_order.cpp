@@ -110,7 +110,7 @@ double Room::next_turn() const {
 /// @param cost  of CPU [s]
 void Room::charge(proto::ViewerId viewer, double cost) {
   const auto found = viewers_.find(viewer);
-  if (found == viewers_.end() || viewers_.size() < 2) return;
+  if (found == viewers_.end()) return;
   if (only_looks(found->second)) order_.looks_from = clock_() + cost * kWaitPerCost;
   if (cost < kFreeCost) return;
   found->second.next_turn = clock_() + cost * kWaitPerCost;

@@ -123,7 +123,8 @@ void Room::show_to(proto::ViewerId viewer) {
 /// they are wanted.
 FrameMaker::Facts Room::frame_facts() {
   measure_forces();
-  if (forces_.in_frames) within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
+  if (forces_.in_frames && !world_->reactions())
+    within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
   std::vector<proto::AppliedCommand>& applied = frame_maker_.applied();
   applied.clear();
   for (const auto& [id, viewer] : viewers_)

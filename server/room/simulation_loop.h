@@ -42,7 +42,9 @@ class SimulationLoop {
       room_.advance_until(now + kAdvanceSlice);
       was_ticking_ = false;
       room_.finish_turn();
-      return room_.advance_waits() ? now + kAdvancePause : now;
+      if (room_.advancing()) return room_.advance_waits() ? now + kAdvancePause : now;
+      // Once it has ended, a turn at once would find nothing to do, after each advance of a script.
+      return room_.ticking() ? now : room_.next_wake();
     }
     const bool ticking = room_.ticking();
     if (ticking && !was_ticking_) pacer_.restart(now);

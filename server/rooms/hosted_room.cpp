@@ -72,7 +72,6 @@ void HostedRoom::cancel_build() {
 
 Turn HostedRoom::turn() {
   if (mailbox_.stopped()) return {};
-  const double before = thread_cpu_seconds();
   if (Scheduler::on_patient_thread()) limit_.signal().raise();
   Turn turn;
   turn.next = loop_->turn();
@@ -82,7 +81,6 @@ Turn HostedRoom::turn() {
   else if (room_->ticking())
     turn.interval = room_->tick_interval();
   if (turn.ticked) metrics_.count_late(loop_->late());
-  metrics_.count_cpu(thread_cpu_seconds() - before);
   post();
   return turn;
 }

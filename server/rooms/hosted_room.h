@@ -65,6 +65,7 @@ class HostedRoom : public Turns, public std::enable_shared_from_this<HostedRoom>
 
   Turn turn() override;
   void end() override { cancel_build(); }
+  void note_cpu(double seconds) override { metrics_.count_cpu(seconds); }
 
  private:
   void give_way_at_stop_points();

@@ -204,6 +204,7 @@ void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
   else
     turn = turns->turn();
   const double cpu = thread_cpu_seconds() - before;
+  if (!ends) turns->note_cpu(cpu);
   lock.lock();
   --running_;
   if (lane == patient) --going_;

@@ -36,6 +36,8 @@ class Turns {
   virtual Turn turn() = 0;
   /// Called once, after the last turn.
   virtual void end() = 0;
+  /// The CPU time of a turn, at its end [s]: to read its clock takes most of a microsecond.
+  virtual void note_cpu(double /*seconds*/) {}
 
  private:
   friend class Scheduler;

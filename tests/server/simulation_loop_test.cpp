@@ -134,6 +134,19 @@ TEST_CASE("commands are heard between the slices of a long advance") {
   CHECK(l.room.advance_left > 90000);
 }
 
+TEST_CASE("a turn in which an advance ends is not followed by an idle one, but by a due tick") {
+  Loop l;
+  l.room.running = false;
+  l.room.advance_left = 2;
+  l.room.cost = 0.02;
+  CHECK(l.loop.turn() <= l.fake.now);
+  CHECK(l.room.advancing());
+  CHECK(l.loop.turn() > l.fake.now);
+  l.room.advance_left = 1;
+  l.room.running = true;
+  CHECK(l.loop.turn() <= l.fake.now);
+}
+
 TEST_CASE("the real-time factor is 1 at full speed and tells slow motion") {
   RealTimeMeter meter;
   const auto run = [&meter](double per_tick) {
