@@ -41,10 +41,10 @@ class EntropyEncoder {
 
  private:
   struct Symbol {
-    std::uint32_t limit, reciprocal, bias;
-    std::uint16_t complement;
-    std::uint8_t shift;
+    std::uint64_t reciprocal;
+    std::uint32_t limit, start, complement;
   };
+  using Counts = std::array<std::array<std::uint32_t, 64>, kContexts>;
 
   void take_tokens(std::span<const std::uint32_t> residuals,
                    std::span<const Neighbours> neighbours);
@@ -54,7 +54,8 @@ class EntropyEncoder {
   std::vector<std::uint16_t> tokens_;  // context and token, in order
   std::vector<std::uint8_t> raw_;
   std::vector<std::uint8_t> coded_;  // filled from the end
-  std::array<std::array<std::uint32_t, 64>, kContexts> counts_{};
+  /// Of values at even and at odd places: a counter waits for the last time that it was raised.
+  std::array<Counts, 2> counts_{};
   std::array<std::array<Symbol, 64>, kContexts> symbols_{};
   std::uint32_t raw_bytes_ = 0;
 };

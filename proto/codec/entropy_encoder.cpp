@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <bit>
 #include <cassert>
+#include <utility>
 
 #include "proto/codec/entropy.h"
 #include "proto/codec/token.h"
@@ -10,7 +11,10 @@ namespace {
 
 constexpr std::size_t kMostCodedBytes = 2;  // of one token
 constexpr std::size_t kMostRawBytes = 3;    // of one residual
-constexpr std::size_t kWordRoom = 8;        // the raw bits are written a word at a time
+// A state x is divided by a frequency f as it is multiplied by 2^44 / f, rounded up: by less than f
+// in 2^44, and x is below 2^19 f, so that the product stays below 2^64 and the quotient is exact.
+constexpr unsigned kReciprocalBits = 44;
+constexpr std::size_t kWordRoom = 8;  // the raw bits are written a word at a time
 
 void put_byte(Bytes& out, std::uint32_t value) {
   out.push_back(static_cast<std::byte>(value));
@@ -68,7 +72,7 @@ void EntropyEncoder::take_tokens(std::span<const std::uint32_t> residuals,
   const std::size_t count = neighbours.size();
   tokens_.resize(3 * count);
   raw_.resize(kMostRawBytes * 3 * count + kWordRoom);
-  for (auto& counts : counts_) counts.fill(0);
+  counts_ = {};
   std::uint16_t* next = tokens_.data();
   std::uint64_t held = 0;  // raw bits that do not fill a byte yet
   std::uint32_t held_bits = 0;
@@ -79,7 +83,7 @@ void EntropyEncoder::take_tokens(std::span<const std::uint32_t> residuals,
       const std::size_t context = context_of(plane[neighbours[i].a] + plane[neighbours[i].b]);
       const Token token = token_of(plane[i]);
       assert(token.token < kTokens);
-      ++counts_[context][token.token];
+      ++counts_[i % 2][context][token.token];
       *next++ = static_cast<std::uint16_t>(context << 6U | token.token);
       if (token.bit_count == 0) continue;
       held |= std::uint64_t{token.bits} << held_bits;
@@ -95,7 +99,9 @@ void EntropyEncoder::take_tokens(std::span<const std::uint32_t> residuals,
 
 void EntropyEncoder::put_tables(Bytes& out) {
   for (std::size_t context = 0; context < kContexts; ++context) {
-    const TokenTable table = normalise(counts_[context]);
+    std::array<std::uint32_t, 64> counts = counts_[0][context];
+    for (std::size_t t = 0; t < counts.size(); ++t) counts[t] += counts_[1][context][t];
+    const TokenTable table = normalise(counts);
     put_byte(out, table.tokens);
     std::uint32_t start = 0;
     for (std::uint32_t t = 0; t < table.tokens; ++t) {
@@ -103,15 +109,8 @@ void EntropyEncoder::put_tables(Bytes& out) {
       put_byte(out, f < 128 ? f : (f & 127U) | 128U);
       if (f >= 128) put_byte(out, f >> 7U);
       if (f == 0) continue;
-      // Dividing by f as multiplying by its reciprocal, exact for states below 2^31.
-      const auto s = static_cast<std::uint32_t>(std::bit_width(f - 1));
-      Symbol& symbol = symbols_[context][t];
-      symbol.limit = f << 19U;
-      symbol.complement = static_cast<std::uint16_t>(kFrequencySum - f);
-      symbol.reciprocal =
-          f < 2 ? ~0U : static_cast<std::uint32_t>(((std::uint64_t{1} << (31 + s)) + f - 1) / f);
-      symbol.shift = static_cast<std::uint8_t>(f < 2 ? 0 : s - 1);
-      symbol.bias = f < 2 ? start + kFrequencySum - 1 : start;
+      symbols_[context][t] = {((std::uint64_t{1} << kReciprocalBits) + f - 1) / f, f << 19U, start,
+                              kFrequencySum - f};
       start += f;
     }
   }
@@ -122,10 +121,10 @@ void EntropyEncoder::code_tokens(Bytes& out) {
   coded_.resize(kMostCodedBytes * tokens_.size() + 2);
   std::uint8_t* const end = coded_.data() + coded_.size();
   std::uint8_t* front = end;
-  std::array<std::uint32_t, 2> states = {kStateLow, kStateLow};
+  std::uint32_t now = kStateLow, next = kStateLow;  // in registers, which they swap at each value
   for (std::size_t j = tokens_.size(); j-- > 0;) {
     const Symbol& symbol = symbols_[tokens_[j] >> 6U][tokens_[j] & 63U];
-    std::uint32_t x = states[j & 1U];
+    std::uint32_t x = now;
     // Whether a byte is due is as good as random, so it is written in any case, and kept if it is.
     const std::uint32_t due = x >= symbol.limit ? 1 : 0;
     front[-1] = static_cast<std::uint8_t>(x);
@@ -135,11 +134,12 @@ void EntropyEncoder::code_tokens(Bytes& out) {
       *--front = static_cast<std::uint8_t>(x);
       x >>= 8U;
     }
-    const auto high = static_cast<std::uint32_t>(std::uint64_t{x} * symbol.reciprocal >> 32U);
-    states[j & 1U] = x + symbol.bias + (high >> symbol.shift) * symbol.complement;
+    const auto quotient = static_cast<std::uint32_t>(x * symbol.reciprocal >> kReciprocalBits);
+    now = std::exchange(next, x + symbol.start + quotient * symbol.complement);
   }
-  put_word(out, states[0]);
-  put_word(out, states[1]);
+  // The last value, number 0, is that of the first state.
+  put_word(out, next);
+  put_word(out, now);
   const auto coded = std::as_bytes(std::span(front, end));
   out.insert(out.end(), coded.begin(), coded.end());
 }

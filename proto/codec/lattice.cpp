@@ -77,12 +77,24 @@ Bounds bounds_of(std::span<const float> positions) {
   bounds.low = {kFar, kFar, kFar};
   bounds.high = {-kFar, -kFar, -kFar};
   if (!are_finite(positions)) return {bounds.high, bounds.low};
-  for (std::size_t i = 0; i + 2 < positions.size(); i += 3)
-    for (std::size_t c = 0; c < 3; ++c) {
-      const float x = positions[i + c];
-      bounds.low[c] = x < bounds.low[c] ? x : bounds.low[c];
-      bounds.high[c] = x > bounds.high[c] ? x : bounds.high[c];
+  // Eight vertices at a time, as whole vectors.
+  constexpr std::size_t kLanes = 24;
+  std::array<float, kLanes> low, high;
+  low.fill(kFar);
+  high.fill(-kFar);
+  const auto take = [&](const float* x, std::size_t count) {
+    for (std::size_t k = 0; k < count; ++k) {
+      low[k] = x[k] < low[k] ? x[k] : low[k];
+      high[k] = x[k] > high[k] ? x[k] : high[k];
     }
+  };
+  std::size_t i = 0;
+  for (; i + kLanes <= positions.size(); i += kLanes) take(positions.data() + i, kLanes);
+  take(positions.data() + i, (positions.size() - i) / 3 * 3);
+  for (std::size_t k = 0; k < kLanes; ++k) {
+    bounds.low[k % 3] = std::min(bounds.low[k % 3], low[k]);
+    bounds.high[k % 3] = std::max(bounds.high[k % 3], high[k]);
+  }
   return bounds;
 }
 

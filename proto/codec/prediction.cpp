@@ -31,11 +31,12 @@ struct Component {
   }
 };
 
+/// Without a branch, as whether a residual is 0 is as good as random.
 std::uint32_t cost_of(std::uint32_t residual) {
-  const auto size = static_cast<std::int32_t>(residual);
-  if (size == 0) return kZeroCost;
-  const std::uint32_t magnitude = size < 0 ? 0U - residual : residual;
-  return kBitCost * static_cast<std::uint32_t>(std::bit_width(magnitude)) + kSignCost;
+  const std::uint32_t sign = 0U - (residual >> 31U);
+  const std::uint32_t magnitude = (residual ^ sign) - sign;
+  const auto bits = static_cast<std::uint32_t>(std::bit_width(magnitude | 1U));
+  return magnitude == 0 ? kZeroCost : kBitCost * bits + kSignCost;
 }
 
 /// Adds to the costs of each spatial prediction what one vertex costs.

@@ -28,18 +28,20 @@ inline std::uint32_t value_of(std::uint32_t token, std::uint32_t bits) {
   return ((2U + (token & 1U)) << bit_count_of(token)) | bits;
 }
 
+/// Contexts of small sums. Static: a table within the function would be copied at each call.
+inline constexpr auto kContextOfSum = [] {
+  constexpr std::array<std::size_t, 9> kMost = {0, 1, 2, 4, 8, 16, 40, 100, 250};
+  std::array<std::uint8_t, kMost.back() + 1> contexts{};
+  for (std::size_t sum = 0, context = 0; sum < contexts.size(); ++sum) {
+    while (sum > kMost[context]) ++context;
+    contexts[sum] = static_cast<std::uint8_t>(context);
+  }
+  return contexts;
+}();
+
 /// Context of a residual by the sum of those of its neighbours a and b.
 inline std::size_t context_of(std::uint32_t around) {
-  constexpr auto kClasses = [] {
-    constexpr std::array<std::size_t, 9> kMost = {0, 1, 2, 4, 8, 16, 40, 100, 250};
-    std::array<std::uint8_t, kMost.back() + 1> classes{};
-    for (std::size_t sum = 0, context = 0; sum < classes.size(); ++sum) {
-      while (sum > kMost[context]) ++context;
-      classes[sum] = static_cast<std::uint8_t>(context);
-    }
-    return classes;
-  }();
-  return around < kClasses.size() ? kClasses[around] : 9;
+  return around < kContextOfSum.size() ? kContextOfSum[around] : 9;
 }
 
 }  // namespace weft::proto::codec
