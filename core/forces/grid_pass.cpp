@@ -203,6 +203,23 @@ void GridPass<Real>::store_velocities(Vec3Array<Real>& v) const {
 }
 
 template <class Real>
+void GridPass<Real>::store(std::span<const Index> particles, Vec3Array<Real>& x,
+                           Vec3Array<Real>& v) const {
+  assert(fits() && std::is_sorted(particles.begin(), particles.end()));
+  auto row = rows_.begin();
+  for (const Index i : particles) {
+    while (i >= row->particle + row->count) ++row;
+    assert(row != rows_.end() && i >= row->particle);
+    const Real* const motion =
+        view_.motion + (row - rows_.begin()) * view_.pitch() + row->column + (i - row->particle);
+    for (int k = 0; k < 3; ++k) {
+      x[static_cast<std::size_t>(i)][k] = motion[k * view_.line];
+      v[static_cast<std::size_t>(i)][k] = motion[(GridView<Real>::kVelocityLine + k) * view_.line];
+    }
+  }
+}
+
+template <class Real>
 void GridPass<Real>::store_external(Vec3Array<Real>& force) const {
   assert(!external_.empty() && "allocate_external comes first");
   grid_put_together(view_, view_.external, 3 * view_.line, force.data()->data());

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cassert>
+#include <span>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -69,6 +70,9 @@ class GridPass {
   void store_positions(Vec3Array<Real>& x) const;
   void store_velocities(Vec3Array<Real>& v) const;
   void store_external(Vec3Array<Real>& force) const;
+  /// Positions and velocities of some particles alone.
+  /// @param particles  of this grid, in the arrays of the whole model, ascending
+  void store(std::span<const Index> particles, Vec3Array<Real>& x, Vec3Array<Real>& v) const;
 
   /// One substep with the forces of springs, dashpots, bending and, if the step says so, the
   /// external ones.

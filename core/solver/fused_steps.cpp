@@ -54,14 +54,13 @@ double advance_grids(Tick<Real>& tick, const Kick<Real>& kick) {
   return work;
 }
 
-/// Takes the particles of all grids to the model's arrays, where the forces of pins are wanted.
+/// Shows a kick where the forces of pins are wanted: the grids' particles that these depend on go
+/// to the model's arrays, a few of all.
 template <class Real>
 void hold_grids(Tick<Real>& tick, const Kick<Real>& kick) {
   if (!tick.collision.held) return;
-  for (std::size_t p = 0; p < tick.parts(); ++p) {
-    tick.grid(p).store_positions(tick.state.x);
-    tick.grid(p).store_velocities(tick.state.v);
-  }
+  for (std::size_t p = 0; p < tick.parts(); ++p)
+    tick.grid(p).store(tick.collision.held->seen(p), tick.state.x, tick.state.v);
   hold_kick(tick, kick, tick.state.v);
 }
 
@@ -133,8 +132,7 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
     const bool last = s == substeps;
     const Kick<Real>& kick = s == 0 ? kicks.opening : last ? kicks.closing : kicks.full;
     if (held) {
-      grid.store_positions(tick.state.x);
-      grid.store_velocities(tick.state.v);
+      grid.store(held->seen(p), tick.state.x, tick.state.v);
       held->act(p, tick.surroundings, tick.state.x, tick.state.v, kick.seconds);
     }
     if (tick.has_external_forces) {

@@ -3,6 +3,7 @@
 #include "core/solver/held_forces.h"
 
 #include <algorithm>
+#include <span>
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/force_pass.h"
@@ -23,6 +24,13 @@ IndexRange take(const std::vector<Element>& from, const IndexRange& range, const
     if (wanted(element)) to.push_back(element);
   }
   return {first, static_cast<Index>(to.size()) - first};
+}
+
+/// A range of a list.
+template <class Element>
+std::span<const Element> elements_of(const std::vector<Element>& list, const IndexRange& range) {
+  return std::span(list).subspan(static_cast<std::size_t>(range.first),
+                                 static_cast<std::size_t>(range.count));
 }
 
 /// The rest curves of the triangles whose curvature has a particle of some kind.
@@ -146,7 +154,39 @@ void HeldForces<Real>::list(const ClothModel<Real>& model) {
     part.membrane_tensor = model.parts[p].membrane_tensor;
     list_part(model, model.parts[p]);
   }
+  seen_.resize(model.parts.size());
+  for (std::size_t p = 0; p < model.parts.size(); ++p) list_seen(p);
   stale_ = false;
+}
+
+template <class Real>
+void HeldForces<Real>::list_seen(std::size_t part) {
+  const ClothPart<Real>& near = near_.parts[part];
+  std::vector<Index>& seen = seen_[part];
+  seen.clear();
+  const auto note = [&seen](const Index* particles, std::size_t count) {
+    seen.insert(seen.end(), particles, particles + count);
+  };
+  for (const Spring<Real>& s : elements_of(near_.springs, near.springs))
+    seen.insert(seen.end(), {s.i, s.j});
+  for (const auto& t : elements_of(near_.membrane, near.membrane)) note(&t.x[0], 3);
+  for (const auto& t : elements_of(near_.locks, near.locks)) note(&t.x[0], 3);
+  for (const auto& h : elements_of(near_.hinges, near.hinges)) note(&h.x[0], 4);
+  for (const auto& t : elements_of(near_.triangles, near.triangles)) note(&t[0], 3);
+  bending_.visit(part, [&](double, const StencilView& stencil) {
+    note(stencil.corners, static_cast<std::size_t>(stencil.count));
+  });
+  const auto note_own = [&](Index i) { seen.push_back(near.particles.first + i); };
+  for (const Triangle& t : near.rest_curves.triangles) std::for_each(t.begin(), t.end(), note_own);
+  for (const Index i : near.rest_curves.particles) note_own(i);
+  for (int r = 0; r + 1 < near.cells.rows; ++r) {
+    for (int c = 0; c + 1 < near.cells.columns; ++c) {
+      if (!near.cells.has_cell(r, c)) continue;
+      for (int k = 0; k < 4; ++k) note_own(near.cells.particle(r + k / 2, c + k % 2));
+    }
+  }
+  std::sort(seen.begin(), seen.end());
+  seen.erase(std::unique(seen.begin(), seen.end()), seen.end());
 }
 
 template <class Real>

@@ -27,6 +27,10 @@ class HeldForces {
   /// Call at each start of a tick. Allocates only where more is held than ever before.
   void begin_tick(const ClothModel<Real>& model, const Pins& pins);
 
+  /// The particles of one part whose state `act` looks at, ascending: those of the elements that
+  /// have a fixed one.
+  const std::vector<Index>& seen(std::size_t part) const { return seen_[part]; }
+
   /// Forces of one part of the cloth and of the air on it act for some time.
   /// @param v        velocities that the dashpots see [m/s]
   /// @param seconds  for which they act
@@ -77,6 +81,7 @@ class HeldForces {
 
   void list(const ClothModel<Real>& model);
   void list_part(const ClothModel<Real>& model, const ClothPart<Real>& part);
+  void list_seen(std::size_t part);
   bool touches(const Index* particles, std::size_t count) const;
 
   bool stale_ = true;
@@ -85,7 +90,8 @@ class HeldForces {
   std::vector<Vec3d> impulse_, kept_;
   ClothModel<Real> near_;  ///< the elements that have a fixed particle
   Stencils bending_;
-  Vec3Array<Real> force_;  ///< scratch; only those of fixed particles are read
+  std::vector<std::vector<Index>> seen_;  ///< by part
+  Vec3Array<Real> force_;                 ///< scratch; only those of fixed particles are read
 };
 
 extern template class HeldForces<float>;

@@ -67,6 +67,27 @@ Moved<Real> moved(const ClothDef& def, Executor* executor = nullptr) {
   return cloth;
 }
 
+/// Some particles of a grid that is stored in part, and in full.
+template <class Real>
+void check_partial_store(const ClothDef& def) {
+  const ClothModel<Real> model = build_cloth<Real>(def);
+  Random random(5);
+  const Vec3Array<Real> x = test::shaken(model, 0.01, random);
+  const Vec3Array<Real> v = test::random_velocities(model, 3, random);
+  GridPass<Real> grid;
+  grid.prepare(model.parts[0]);
+  grid.load(x, v);
+  const Vec3Array<Real> nothing(x.size(), Vec3<Real>::Zero());
+  Vec3Array<Real> some_x = nothing, some_v = nothing;
+  std::vector<Index> chosen;
+  for (Index i = 1; i < model.particle_count(); i += 3) chosen.push_back(i);
+  grid.store(chosen, some_x, some_v);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    CHECK(some_x[i] == (i % 3 == 1 ? x[i] : nothing[i]));
+    CHECK(some_v[i] == (i % 3 == 1 ? v[i] : nothing[i]));
+  }
+}
+
 template <class Real>
 void check_all_targets(const ClothDef& def) {
   const Moved<Real> best = moved<Real>(def);
@@ -112,6 +133,13 @@ TEMPLATE_TEST_CASE("bands of a grid move it to the same bits, whichever comes fi
     CHECK(other.power == alone.power);
   }
   CHECK(std::max(1, backwards.most_chunks) == bands);
+}
+
+TEMPLATE_TEST_CASE("some particles of a grid are stored as all are, and no others", "", float,
+                   double) {
+  ClothDef def = test::flat_cloth(7, 19, 1, 0.8);
+  def.outline = GENERATE(Outline::rectangle, Outline::ellipse);
+  check_partial_store<TestType>(def);
 }
 
 TEST_CASE("a pinned particle stays where it is, and what pulls it counts no power") {
