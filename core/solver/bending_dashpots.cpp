@@ -8,10 +8,10 @@
 #include <cmath>
 #include <map>
 #include <span>
+#include <utility>
 
 #include "core/cloth/bending_stencil.h"
 #include "core/solver/constants.h"
-#include "core/stop_signal.h"
 
 namespace weft {
 namespace {
@@ -43,6 +43,16 @@ std::map<Edge, Index> opposite_particles(const ClothModel<Real>& model,
   return opposite;
 }
 
+/// Calls work(band) for the bands of a part: the whole one without an executor.
+template <class Part, class Work>
+void for_bands(const Part& part, Executor* executor, Work&& work) {
+  if (!executor || part.bands.empty())
+    run_chunks(nullptr, 1, [&](int) { work(part.whole); });
+  else
+    run_chunks(executor, static_cast<int>(part.bands.size()),
+               [&](int band) { work(part.bands[static_cast<std::size_t>(band)]); });
+}
+
 }  // namespace
 
 template <class Real>
@@ -55,11 +65,12 @@ void BendingDashpots<Real>::prepare(const ClothModel<Real>& model) {
     Part& list = parts_.emplace_back();
     list.number = p;
     this->list(model, part, list);
+    divide(part.particles, list);
     most = std::max(most, list.particles.size());
   }
   const std::size_t particles = parts_.empty() ? 0 : model.mass.size();
   gradient_.assign(most, {});
-  for (QuadArray<Real>* array : {&start_, &now_, &before_, &change_, &product_})
+  for (QuadArray<Real>* array : {&start_, &now_, &before_, &change_, &next_change_, &product_})
     array->assign(particles, {});
 }
 
@@ -121,12 +132,44 @@ void BendingDashpots<Real>::list(const ClothModel<Real>& model, const ClothPart<
   });
 }
 
-/// Finds the gradients of all b. With N the normal of the lines e and f, its change is that of
-/// e x f across itself, over the length of that. Crumpled cloth, whose normal turns faster than it
-/// bends, is not damped.
+/// Divides particles into bands, unless most stencils would lie on borders: a mesh numbers its
+/// particles as it likes.
 template <class Real>
-void BendingDashpots<Real>::aim(const Part& part, const Vec3Array<Real>& x) {
-  for (std::size_t s = 0; s < part.viscosity.size(); ++s) {
+void BendingDashpots<Real>::divide(const IndexRange& particles, Part& part) const {
+  const auto first = static_cast<std::size_t>(particles.first),
+             count = static_cast<std::size_t>(particles.count), stencils = part.viscosity.size();
+  part.whole = {first, first + count, 0, stencils, {{0, stencils, true}}};
+  const std::size_t bands = std::min(count / kDashpotBandParticles, kMostDashpotBands);
+  std::size_t touched = 0;
+  for (std::size_t k = 0; k < bands && bands > 1; ++k) {
+    Band band{first + count * k / bands,
+              first + count * (k + 1) / bands,
+              stencils * k / bands,
+              stencils * (k + 1) / bands,
+              {}};
+    for (std::size_t s = 0; s < stencils; ++s) {
+      std::size_t own = 0;
+      for (std::size_t n = part.begin[s]; n < part.begin[s + 1]; ++n)
+        own += band.has(part.particles[n]);
+      if (own == 0) continue;
+      const bool inside = own == part.begin[s + 1] - part.begin[s];
+      if (band.runs.empty() || band.runs.back().end != s || band.runs.back().inside != inside)
+        band.runs.push_back({s, s, inside});
+      band.runs.back().end = s + 1;
+      ++touched;
+    }
+    part.bands.push_back(std::move(band));
+  }
+  if (static_cast<double>(touched) > kMostTouched * static_cast<double>(stencils))
+    part.bands.clear();
+}
+
+/// Finds the gradients of all b of a band's share. With N the normal of the lines e and f, its
+/// change is that of e x f across itself, over the length of that. Crumpled cloth, whose normal
+/// turns faster than it bends, is not damped.
+template <class Real>
+void BendingDashpots<Real>::aim(const Part& part, const Band& band, const Vec3Array<Real>& x) {
+  for (std::size_t s = band.first_stencil; s < band.end_stencil; ++s) {
     const std::size_t begin = part.begin[s], end = part.begin[s + 1];
     const auto at = [&](std::size_t n) -> const Vec3<Real>& {
       return x[static_cast<std::size_t>(part.particles[n])];
@@ -161,72 +204,110 @@ void BendingDashpots<Real>::aim(const Part& part, const Vec3Array<Real>& x) {
   }
 }
 
-/// Adds K v to `product`.
+/// Rate of change of a stencil's b sqrt(tau k).
 template <class Real>
-void BendingDashpots<Real>::multiply(const Part& part, const QuadArray<Real>& v,
+inline Real BendingDashpots<Real>::rate_of(const Part& part, std::size_t s,
+                                           const QuadArray<Real>& v) const {
+  const std::size_t begin = part.begin[s], end = part.begin[s + 1];
+  const Quad<Real> first = v[static_cast<std::size_t>(part.particles[begin])];
+  Quad<Real> rates;  // by components
+  for (std::size_t n = begin + 1; n < end; ++n)
+    rates.lanes +=
+        gradient_[n].lanes * (v[static_cast<std::size_t>(part.particles[n])] - first).lanes;
+  return rates[0] + rates[1] + rates[2];
+}
+
+/// Adds K v to `product` at the band's particles.
+template <class Real>
+void BendingDashpots<Real>::multiply(const Part& part, const Band& band, const QuadArray<Real>& v,
                                      QuadArray<Real>& product) const {
-  for (std::size_t s = 0; s < part.viscosity.size(); ++s) {
-    const std::size_t begin = part.begin[s], end = part.begin[s + 1];
-    const Quad<Real> first = v[static_cast<std::size_t>(part.particles[begin])];
-    Quad<Real> rates;  // by components
-    for (std::size_t n = begin + 1; n < end; ++n)
-      rates.lanes +=
-          gradient_[n].lanes * (v[static_cast<std::size_t>(part.particles[n])] - first).lanes;
-    const Real rate = rates[0] + rates[1] + rates[2];
-    for (std::size_t n = begin; n < end; ++n)
-      product[static_cast<std::size_t>(part.particles[n])] += gradient_[n] * rate;
+  for (const Run& run : band.runs) {
+    for (std::size_t s = run.first; s < run.end; ++s) {
+      const Real rate = rate_of(part, s, v);
+      for (std::size_t n = part.begin[s]; n < part.begin[s + 1]; ++n) {
+        const Index i = part.particles[n];
+        if (run.inside || band.has(i)) product[static_cast<std::size_t>(i)] += gradient_[n] * rate;
+      }
+    }
   }
 }
 
-/// Finds the impulses of the dashpots on all particles, into `now_`.
+/// Takes over velocities.
 template <class Real>
-void BendingDashpots<Real>::pass(const Part& part, const IndexRange& range, int stages,
-                                 Real seconds, const ClothState<Real>& state) {
+void BendingDashpots<Real>::begin(const Band& band, const Vec3Array<Real>& v) {
+  for (QuadArray<Real>* array : {&start_, &before_, &product_})
+    std::fill(array->data() + band.first, array->data() + band.end, Quad<Real>{});
+  to_quads(std::span<const Vec3<Real>>(v).subspan(band.first, band.end - band.first),
+           change_.data() + band.first);
+}
+
+/// The first stage.
+template <class Real>
+void BendingDashpots<Real>::open(const Part& part, const Band& band, Real by_start,
+                                 const std::vector<Real>& inverse_mass) {
+  multiply(part, band, change_, start_);
+  for (std::size_t i = band.first; i < band.end; ++i) {
+    now_[i] = start_[i] * by_start;
+    next_change_[i] = now_[i] * inverse_mass[i];
+  }
+}
+
+/// A later stage, into `before_`. Other bands read `change_` meanwhile.
+template <class Real>
+void BendingDashpots<Real>::advance(const Part& part, const Band& band, const Factors& by,
+                                    const std::vector<Real>& inverse_mass) {
+  multiply(part, band, change_, product_);
+  for (std::size_t i = band.first; i < band.end; ++i) {
+    before_[i] =
+        now_[i] * by.now + before_[i] * by.before + product_[i] * by.product + start_[i] * by.start;
+    product_[i] = {};
+    next_change_[i] = before_[i] * inverse_mass[i];
+  }
+}
+
+/// Finds the impulses of the dashpots on all particles, into `now_`, and changes the velocities.
+template <class Real>
+void BendingDashpots<Real>::pass(const Part& part, int stages, Real seconds, Executor* executor,
+                                 ClothState<Real>& state) {
   assert(stages >= 3 && stages % 2 == 1);
-  const auto first = static_cast<std::size_t>(range.first),
-             end = static_cast<std::size_t>(range.end());
   const auto b = [](int j) { return j < 2 ? 1.0 / 3 : (j * j + j - 2.0) / (2.0 * j * (j + 1)); };
   const double w = 4.0 / (stages * stages + stages - 2.0);
-  for (QuadArray<Real>* array : {&start_, &before_, &product_})
-    std::fill(array->begin() + range.first, array->begin() + range.end(), Quad<Real>{});
-  to_quads(std::span<const Vec3<Real>>(state.v).subspan(first, end - first),
-           change_.data() + range.first);
-  multiply(part, change_, start_);
-  for (std::size_t i = first; i < end; ++i)
-    now_[i] = start_[i] * (-seconds * static_cast<Real>(w / 3));
+  for_bands(part, executor, [&](const Band& band) { begin(band, state.v); });
+  const Real by_start = -seconds * static_cast<Real>(w / 3);
+  for_bands(part, executor,
+            [&](const Band& band) { open(part, band, by_start, state.inverse_mass); });
+  std::swap(change_, next_change_);
   for (int j = 2; j <= stages; ++j) {
-    stop_point();
-    for (std::size_t i = first; i < end; ++i) change_[i] = now_[i] * state.inverse_mass[i];
-    multiply(part, change_, product_);
     const double mu = (2.0 * j - 1) / j * b(j) / b(j - 1), nu = -(j - 1.0) / j * b(j) / b(j - 2);
-    const auto by_now = static_cast<Real>(mu), by_before = static_cast<Real>(nu),
-               by_product = -seconds * static_cast<Real>(mu * w),
-               by_start = -seconds * static_cast<Real>(mu * w * b(j - 1));
-    for (std::size_t i = first; i < end; ++i) {
-      before_[i] = now_[i] * by_now + before_[i] * by_before + product_[i] * by_product +
-                   start_[i] * by_start;
-      product_[i] = {};
-    }
+    const Factors by{static_cast<Real>(mu), static_cast<Real>(nu),
+                     -seconds * static_cast<Real>(mu * w),
+                     -seconds * static_cast<Real>(mu * w * b(j - 1))};
+    for_bands(part, executor,
+              [&](const Band& band) { advance(part, band, by, state.inverse_mass); });
     std::swap(now_, before_);
+    std::swap(change_, next_change_);
   }
+  for_bands(part, executor, [&](const Band& band) {
+    for (std::size_t i = band.first; i < band.end; ++i)
+      state.v[i] += to_vector(now_[i]) * state.inverse_mass[i];
+  });
 }
 
 template <class Real>
 void BendingDashpots<Real>::act(const ClothModel<Real>& model, double seconds,
-                                ClothState<Real>& state, HeldForces<Real>* held, Profile& profile) {
+                                ClothState<Real>& state, HeldForces<Real>* held, Executor* executor,
+                                Profile& profile) {
   assert(seconds > 0 && (parts_.empty() || state.v.size() == now_.size()));
   const StageTimer timer(profile, Stage::bending, 0);
   for (const Part& part : parts_) {
     if (state.is_asleep(part.number)) continue;
     const ClothPart<Real>& cloth = model.parts[part.number];
     const int stages = stages_of(cloth, seconds);
-    aim(part, state.x);
-    pass(part, cloth.particles, stages, static_cast<Real>(seconds), state);
-    for (Index i = cloth.particles.first; i < cloth.particles.end(); ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      const Vec3<Real> impulse = to_vector(now_[k]);
-      state.v[k] += impulse * state.inverse_mass[k];
-      if (held && held->holds(i)) held->push(i, impulse.template cast<double>());
+    for_bands(part, executor, [&](const Band& band) { aim(part, band, state.x); });
+    pass(part, stages, static_cast<Real>(seconds), executor, state);
+    for (Index i = cloth.particles.first; held && i < cloth.particles.end(); ++i) {
+      const Vec3<Real> impulse = to_vector(now_[static_cast<std::size_t>(i)]);
+      if (held->holds(i)) held->push(i, impulse.template cast<double>());
     }
     profile[Stage::bending].work += static_cast<std::size_t>(stages) * part.viscosity.size();
   }

@@ -6,6 +6,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/executor.h"
 #include "core/math/quad.h"
 #include "core/profile.h"
 #include "core/solver/held_forces.h"
@@ -42,12 +43,31 @@ class BendingDashpots {
   double updates(const ClothModel<Real>& model, double seconds) const;
 
   /// Damps the velocities of all parts that are awake, over some time. Throws Stopped.
-  /// @param seconds  positive
-  /// @param held     receives the impulses on fixed particles; may be null
+  /// @param seconds   positive
+  /// @param held      receives the impulses on fixed particles; may be null
+  /// @param executor  runs bands of particles on its threads; may be null, with the same result
   void act(const ClothModel<Real>& model, double seconds, ClothState<Real>& state,
-           HeldForces<Real>* held, Profile& profile);
+           HeldForces<Real>* held, Executor* executor, Profile& profile);
 
  private:
+  /// Consecutive stencils.
+  struct Run {
+    std::size_t first, end;
+    bool inside;  ///< all of their particles are the band's
+  };
+  /// Consecutive particles, which one thread works on. A stencil on a border is evaluated by all
+  /// bands that it touches, and each adds to its own particles: in the same order, whatever the
+  /// bands are.
+  struct Band {
+    std::size_t first = 0, end = 0;                  ///< of its particles
+    std::size_t first_stencil = 0, end_stencil = 0;  ///< its share of all stencils
+    std::vector<Run> runs;                           ///< of those that touch it, ascending
+
+    bool has(Index particle) const {
+      const auto i = static_cast<std::size_t>(particle);
+      return i >= first && i < end;
+    }
+  };
   /// Stencils of a part, one behind the other. Particles are those of the model.
   struct Part {
     std::size_t number = 0;
@@ -58,13 +78,28 @@ class BendingDashpots {
     /// Places in each stencil's list: the normal is that of the lines from the first to the second
     /// and from the third to the fourth.
     std::vector<std::array<std::size_t, 4>> plane;
+    Band whole;               ///< all particles
+    std::vector<Band> bands;  ///< the same in several; empty if that is not worth it
+  };
+
+  /// Factors of a stage of the method.
+  struct Factors {
+    Real now, before, product, start;
   };
 
   void list(const ClothModel<Real>& model, const ClothPart<Real>& part, Part& list) const;
-  void aim(const Part& part, const Vec3Array<Real>& x);
-  void multiply(const Part& part, const QuadArray<Real>& v, QuadArray<Real>& product) const;
-  void pass(const Part& part, const IndexRange& range, int stages, Real seconds,
-            const ClothState<Real>& state);
+  void divide(const IndexRange& particles, Part& part) const;
+  Real rate_of(const Part& part, std::size_t stencil, const QuadArray<Real>& v) const;
+  void aim(const Part& part, const Band& band, const Vec3Array<Real>& x);
+  void multiply(const Part& part, const Band& band, const QuadArray<Real>& v,
+                QuadArray<Real>& product) const;
+  void begin(const Band& band, const Vec3Array<Real>& v);
+  void open(const Part& part, const Band& band, Real by_start,
+            const std::vector<Real>& inverse_mass);
+  void advance(const Part& part, const Band& band, const Factors& by,
+               const std::vector<Real>& inverse_mass);
+  void pass(const Part& part, int stages, Real seconds, Executor* executor,
+            ClothState<Real>& state);
 
   std::vector<Part> parts_;
   QuadArray<Real>
@@ -72,8 +107,9 @@ class BendingDashpots {
   // Of each particle:
   QuadArray<Real> start_;         ///< K times the velocities at the start [N]
   QuadArray<Real> now_, before_;  ///< impulses after a stage and the one before it [N s]
-  QuadArray<Real> change_;        ///< velocities, and then how far they change by these [m/s]
-  QuadArray<Real> product_;       ///< K times these [N]
+  /// Velocities, and then how far they change by these, for this stage and the next one [m/s].
+  QuadArray<Real> change_, next_change_;
+  QuadArray<Real> product_;  ///< K times these [N]
 };
 
 extern template class BendingDashpots<float>;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+
 // The numbers that the solvers share; implicit/ has its own. Margins that follow from the widest
 // vector stand with the kernels (grid_relaxation.h).
 
@@ -42,6 +44,15 @@ inline constexpr double kMostTurning = 0.15;
 /// Stages of a pass between ticks, at most; a fabric that needs more is refused [1]. Larger: ticks
 /// of a fine mesh may take long. Smaller: less damping of fine meshes.
 inline constexpr int kMostDashpotStages = 1000;
+
+/// Least size of a band of particles, and bands of a cloth at most. On smaller and more bands,
+/// threads that synchronise at every stage and the stencils of borders cost more than they save.
+inline constexpr std::size_t kDashpotBandParticles = 2048, kMostDashpotBands = 8;
+
+/// Stencils that all bands have together at most, over those of the cloth [1]: what is on a border
+/// is evaluated several times. Larger: cloths whose particles are in no order are divided too, at a
+/// cost that several threads do not make good.
+inline constexpr double kMostTouched = 1.25;
 
 // The moduli of XPBD.
 

@@ -341,7 +341,8 @@ void World<Real>::damp_bending(SolverKind kind, AdvanceResult& result) {
   if (solvers_.dashpots.empty() || result.blow_up) return;
   const double before = kinetic_energy(model_, state_);
   solvers_.dashpots.act(model_, tick_seconds(), state_,
-                        supports_.wanted ? &supports_.held : nullptr, report_.profile);
+                        supports_.wanted ? &supports_.held : nullptr, runtime_.executor,
+                        report_.profile);
   const double lost = before - kinetic_energy(model_, state_);
   if (kind == SolverKind::implicit) solvers_.implicit.take_over(state_.v);
   result.after.kinetic -= lost;
