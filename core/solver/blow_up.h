@@ -5,6 +5,7 @@
 
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
+#include "core/executor.h"
 #include "core/solver/constants.h"
 
 // Checks the motion of all particles before contact reads them, so that no tree, grid or index
@@ -25,10 +26,11 @@ struct BlowUp {
 };
 
 /// Checks all cloths that are awake.
-/// @param dt  the coming drift, or the last one [s]; positive
-/// @returns   the first particle with implausible motion, if there is one
+/// @param dt        the coming drift, or the last one [s]; positive
+/// @param executor  looks at many particles on its threads; may be null
+/// @returns         the first particle with implausible motion, if there is one
 template <class Real>
 std::optional<BlowUp> find_blow_up(const ClothModel<Real>& model, const ClothState<Real>& state,
-                                   Real dt);
+                                   Real dt, Executor* executor = nullptr);
 
 }  // namespace weft

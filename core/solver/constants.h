@@ -20,6 +20,10 @@ inline constexpr double kFarthestFromOrigin = 1000;
 /// cloth is noticed later. Smaller: cloth in a storm is stopped.
 inline constexpr double kPlausibleSpeed = 200;
 
+/// Particles that one thread looks at for a blow-up, at least. Fewer: to deal them out costs more
+/// than the look.
+inline constexpr std::size_t kLookedAtLeast = 4096;
+
 // Steps while contact cannot act.
 
 /// Substeps after which positions are saved, to return to if a particle has left its path. Larger:

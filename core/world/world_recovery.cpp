@@ -81,7 +81,8 @@ std::optional<Divergence> World<Real>::examine(const AdvanceResult& result, Solv
   d.tick = tick_ + 1;
   d.substeps = substeps;
   const auto dt = static_cast<Real>(tick_seconds() / substeps);
-  if (const auto found = result.blow_up ? result.blow_up : find_blow_up(model_, state_, dt)) {
+  if (const auto found =
+          result.blow_up ? result.blow_up : find_blow_up(model_, state_, dt, runtime_.executor)) {
     d.cause = cause_of(*found);
     d.particle = found->particle;
     d.value = found->value;

@@ -9,6 +9,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/world/world.h"
+#include "tests/support/two_threads.h"
 #include "tests/support/worlds.h"
 
 using namespace weft;
@@ -88,6 +89,20 @@ TEST_CASE("a particle may go as far in a substep as its cloth is long, and at 20
     CHECK_FALSE(found_at(most * 0.999));
     CHECK(found_at(most * 1.001));
   }
+}
+
+TEST_CASE("two threads find the same particle of a large cloth as one, the first") {
+  const ClothModel<float> model = build_cloth<float>(test::flat_cloth(101, 97));
+  test::TwoThreads two_threads;
+  REQUIRE_FALSE(find_blow_up(model, initial_state(model), 1e-3f, &two_threads));
+  for (const std::size_t i : {0u, 4898u, 4899u, 9796u}) {
+    ClothState<float> state = initial_state(model);
+    state.v[i][1] = state.x.back()[2] = std::numeric_limits<float>::quiet_NaN();
+    const auto found = find_blow_up(model, state, 1e-3f, &two_threads);
+    REQUIRE(found);
+    CHECK(found->particle == static_cast<Index>(i));
+  }
+  CHECK(two_threads.shared() > 0);
 }
 
 TEST_CASE("a cloth that sleeps is not examined") {
