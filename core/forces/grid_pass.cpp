@@ -3,6 +3,7 @@
 #include "core/forces/grid_pass.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <utility>
 
@@ -22,6 +23,11 @@ double take_power(const GridView<Real>& view, bool has_external) {
   const double sum = sum_of_columns(view, line);
   std::fill_n(line, view.scratch_line(), Real(0));
   return sum;
+}
+
+template <class Real>
+Real* velocities(const GridView<Real>& view) {
+  return view.motion + GridView<Real>::kVelocityLine * view.line;
 }
 
 }  // namespace
@@ -149,22 +155,9 @@ Aabb<Real> GridPass<Real>::box_off_paths(Real time) const {
 }
 
 template <class Real>
-void GridPass<Real>::load_velocities(const Vec3Array<Real>& v) {
-  grid_take_apart(view_, v.data()->data(),
-                  view_.motion + GridView<Real>::kVelocityLine * view_.line, view_.pitch());
-}
-
-template <class Real>
 void GridPass<Real>::load_positions(const Vec3Array<Real>& x) {
   assert(fits());
   grid_take_apart(view_, x.data()->data(), view_.motion, view_.pitch());
-}
-
-template <class Real>
-void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v) {
-  assert(v.size() == x.size());
-  load_positions(x);
-  load_velocities(v);
 }
 
 template <class Real>
@@ -187,19 +180,6 @@ template <class Real>
 void GridPass<Real>::load_external(const Vec3Array<Real>& force) {
   assert(!external_.empty() && "allocate_external comes first");
   grid_take_apart(view_, force.data()->data(), view_.external, 3 * view_.line);
-}
-
-template <class Real>
-void GridPass<Real>::store_positions(Vec3Array<Real>& x) const {
-  assert(fits());
-  grid_put_together(view_, view_.motion, view_.pitch(), x.data()->data());
-}
-
-template <class Real>
-void GridPass<Real>::store_velocities(Vec3Array<Real>& v) const {
-  assert(fits());
-  grid_put_together(view_, view_.motion + GridView<Real>::kVelocityLine * view_.line, view_.pitch(),
-                    v.data()->data());
 }
 
 template <class Real>
@@ -309,14 +289,65 @@ double GridPass<Real>::advance(const GridStep<Real>& step, Executor* executor) {
   return power;
 }
 
+/// A band's rows alone.
+template <class Real>
+GridView<Real> GridPass<Real>::rows_of(int band) {
+  const std::ptrdiff_t first = first_row(band);
+  GridView<Real> view = bands_.empty() ? view_ : view_of(bands_[static_cast<std::size_t>(band)]);
+  view.rows = static_cast<int>(first_row(band + 1) - first);
+  view.row += first;
+  view.motion += first * view.pitch();
+  if (view.external) view.external += 3 * first * view.line;
+  return view;
+}
+
+/// Calls work(band, view of its rows) for all bands, whose rows do not depend on each other.
+template <class Real>
+template <class Work>
+void GridPass<Real>::for_bands(Executor* executor, Work&& work) {
+  assert(fits());
+  run_chunks(bands_.empty() ? nullptr : executor, band_count(),
+             [&](int band) { work(band, rows_of(band)); });
+}
+
+template <class Real>
+void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Executor* executor) {
+  assert(v.size() == x.size());
+  for_bands(executor, [&](int, const GridView<Real>& rows) {
+    grid_take_apart(rows, x.data()->data(), rows.motion, rows.pitch());
+    grid_take_apart(rows, v.data()->data(), velocities(rows), rows.pitch());
+  });
+}
+
+template <class Real>
+void GridPass<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Executor* executor) {
+  assert(v.size() == x.size());
+  for_bands(executor, [&](int, const GridView<Real>& rows) {
+    grid_put_together(rows, rows.motion, rows.pitch(), x.data()->data());
+    grid_put_together(rows, velocities(rows), rows.pitch(), v.data()->data());
+  });
+}
+
+template <class Real>
+void GridPass<Real>::store_velocities(Vec3Array<Real>& v, Executor* executor) {
+  for_bands(executor, [&](int, const GridView<Real>& rows) {
+    grid_put_together(rows, velocities(rows), rows.pitch(), v.data()->data());
+  });
+}
+
 template <class Real>
 double GridPass<Real>::drift(Real dt, bool has_external, const Vec3Array<Real>& v,
-                             Vec3Array<Real>& x) {
-  assert(fits());
+                             Vec3Array<Real>& x, Executor* executor) {
   assert(x.size() == v.size());
   assert(!has_external || !external_.empty());
-  grid_drift(view_, dt, has_external, v.data()->data(), x.data()->data());
-  return take_power(view_, has_external);
+  std::array<double, kMostBands> power{};
+  for_bands(executor, [&](int band, const GridView<Real>& rows) {
+    grid_drift(rows, dt, has_external, v.data()->data(), x.data()->data());
+    power[static_cast<std::size_t>(band)] = take_power(rows, has_external);
+  });
+  double sum = 0;
+  for (const double part : power) sum += part;
+  return sum;
 }
 
 template <class Real>

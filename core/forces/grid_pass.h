@@ -42,7 +42,8 @@ class GridPass {
   bool fits() const { return view_.rows > 0; }
 
   /// Loads positions and velocities of the whole model for the calls below.
-  void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v);
+  /// @param executor  runs bands of rows on its threads; may be null, here and below
+  void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Executor* executor = nullptr);
   void load_positions(const Vec3Array<Real>& x);
   void load_inverse_mass(const std::vector<Real>& inverse_mass);
   void load_wind(const Vec3Array<Real>& wind);
@@ -67,8 +68,8 @@ class GridPass {
     motion_ = kept_;
   }
 
-  void store_positions(Vec3Array<Real>& x) const;
-  void store_velocities(Vec3Array<Real>& v) const;
+  void store(Vec3Array<Real>& x, Vec3Array<Real>& v, Executor* executor = nullptr);
+  void store_velocities(Vec3Array<Real>& v, Executor* executor = nullptr);
   void store_external(Vec3Array<Real>& force) const;
   /// Positions and velocities of some particles alone.
   /// @param particles  of this grid, in the arrays of the whole model, ascending
@@ -76,13 +77,13 @@ class GridPass {
 
   /// One substep with the forces of springs, dashpots, bending and, if the step says so, the
   /// external ones.
-  /// @param executor  runs bands of rows on its threads; may be null
   /// @returns power of the external forces at the new velocities [W]
   double advance(const GridStep<Real>& step, Executor* executor = nullptr);
 
   /// Loads the model's velocities, moves its positions by dt and loads them too.
   /// @returns power of the external forces [W]; 0 without them
-  double drift(Real dt, bool has_external, const Vec3Array<Real>& v, Vec3Array<Real>& x);
+  double drift(Real dt, bool has_external, const Vec3Array<Real>& v, Vec3Array<Real>& x,
+               Executor* executor = nullptr);
 
   /// Forces of springs, dashpots and bending on each particle of the part [N]. Overwrites its range
   /// of `force`, which is the whole model's, and the external forces, whose arrays it sizes.
@@ -109,10 +110,12 @@ class GridPass {
   int band_count() const;
   std::ptrdiff_t first_row(int band) const;
   GridView<Real> view_of(Band& band) const;
+  GridView<Real> rows_of(int band);
+  template <class Work>
+  void for_bands(Executor* executor, Work&& work);
   void begin_band(int number);
   void advance_band(int number, const GridStep<Real>& step);
   Real* allocate(AlignedVector<Real>& array, std::ptrdiff_t lines) const;
-  void load_velocities(const Vec3Array<Real>& v);
   void lay_out(const ClothPart<Real>& part);
   void lay_out_coefficients(const ClothPart<Real>& part);
   std::vector<Real> coefficient_row(const ClothPart<Real>& part, int row) const;

@@ -72,8 +72,7 @@ double advance_metered(Tick<Real>& tick, const Kick<Real>& kick) {
   const double work = advance_grids(tick, kick);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     if (tick.has_external_forces) tick.grid(p).store_external(tick.work.external);
-    tick.grid(p).store_positions(tick.state.x);
-    tick.grid(p).store_velocities(tick.state.v);
+    tick.grid(p).store(tick.state.x, tick.state.v, tick.work.executor);
   }
   meter_kick(tick, kick);
   meter.finish(tick.model, tick.state, nullptr, true, static_cast<double>(tick.dt));
@@ -114,7 +113,8 @@ template <class Real>
 void load_grids(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
   for (std::size_t p = 0; p < tick.parts(); ++p) {
-    if (tick.by_rows(p) && !tick.rests(p)) tick.grid(p).load(tick.state.x, tick.state.v);
+    if (tick.by_rows(p) && !tick.rests(p))
+      tick.grid(p).load(tick.state.x, tick.state.v, tick.work.executor);
   }
 }
 
@@ -141,8 +141,7 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
     }
     work += advance_grid(tick, p, kick, last ? Real(0) : tick.dt);
   }
-  grid.store_positions(tick.state.x);
-  grid.store_velocities(tick.state.v);
+  grid.store(tick.state.x, tick.state.v, tick.work.executor);
   return work;
 }
 
@@ -198,10 +197,8 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
     renew = off > paths->reach * static_cast<Real>(kCalmRenewal);
   }
   guard.leave_calm_paths(s - first, time, box.centre(), renew);
-  for (std::size_t p = 0; p < tick.parts(); ++p) {
-    tick.grid(p).store_positions(tick.state.x);
-    tick.grid(p).store_velocities(tick.state.v);
-  }
+  for (std::size_t p = 0; p < tick.parts(); ++p)
+    tick.grid(p).store(tick.state.x, tick.state.v, tick.work.executor);
   return work;
 }
 

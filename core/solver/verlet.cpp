@@ -132,7 +132,7 @@ void advance_kick(Tick<Real>& tick, const Kick<Real>& k, bool again) {
     if (tick.by_rows(p)) {
       if (tick.has_impulses) tick.grid(p).load_external(tick.work.external);
       advance_grid(tick, p, k, Real(0));
-      tick.grid(p).store_velocities(v);
+      tick.grid(p).store_velocities(v, tick.work.executor);
     } else if (tick.work.kicks_at_once(tick.model, p)) {
       kick_mesh(tick, p, k, again);
     } else {
@@ -154,7 +154,7 @@ void evaluate_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
     }
     const StageTimer timer(tick.profile, Stage::stretch, membrane_elements(part));
     tick.profile[Stage::bending].work += quadratic_stencil_count(part);
-    tick.grid(p).load(tick.state.x, velocity);
+    tick.grid(p).load(tick.state.x, velocity, tick.work.executor);
     tick.grid(p).compute_internal_forces(tick.work.internal);
   }
   evaluate_external_forces(tick, velocity, true);
@@ -227,7 +227,7 @@ double drift(Tick<Real>& tick) {
     const IndexRange& range = tick.part(p).particles;
     if (tick.sleeps(p)) continue;
     if (tick.by_rows(p) && along) {
-      work += tick.grid(p).drift(tick.dt, tick.has_external_forces, v, x) *
+      work += tick.grid(p).drift(tick.dt, tick.has_external_forces, v, x, tick.work.executor) *
               static_cast<double>(tick.dt);
     } else {
       work += external_work(tick, range);

@@ -52,7 +52,7 @@ Moved<Real> moved(const ClothDef& def, Executor* executor = nullptr) {
   grid.prepare(model.parts[0]);
   grid.allocate_external(true);
   if (executor) grid.allocate_bands();
-  grid.load(cloth.x, cloth.v);
+  grid.load(cloth.x, cloth.v, executor);
   grid.load_inverse_mass(inverse_mass);
   grid.load_wind(wind);
   GridStep<Real> step{Real(0.999), Real(1e-4), {0, Real(-9.81), 1}, Real(1e-4), true};
@@ -60,9 +60,8 @@ Moved<Real> moved(const ClothDef& def, Executor* executor = nullptr) {
     grid.compute_air_forces(1.225);
     cloth.power += grid.advance(step, executor);
   }
-  grid.store_positions(cloth.x);
-  grid.store_velocities(cloth.v);
-  cloth.power += grid.drift(Real(1e-4), true, cloth.v, cloth.x);
+  grid.store(cloth.x, cloth.v, executor);
+  cloth.power += grid.drift(Real(1e-4), true, cloth.v, cloth.x, executor);
   cloth.energy = grid.elastic_energy();
   return cloth;
 }
@@ -155,8 +154,7 @@ TEST_CASE("a pinned particle stays where it is, and what pulls it counts no powe
   grid.load_inverse_mass(std::vector<float>(x.size(), 0));
   grid.load_external(pull);
   CHECK(grid.advance({1, 1, {1, 2, 3}, 1, true}) == 0);
-  grid.store_positions(x);
-  grid.store_velocities(v);
+  grid.store(x, v);
   CHECK(x == before);
   CHECK(v == Vec3Array<float>(x.size(), Vec3f::Zero()));
 }
