@@ -35,6 +35,27 @@ LoneBlock<Real> empty_block(std::size_t first) {
   return block;
 }
 
+/// Lets work(blocks) respond, for all at once or in parts.
+template <class Real, class Work>
+LoneResponse<Real> in_parts(std::span<LoneBlock<Real>> blocks, Executor* executor, Work&& work) {
+  // The last block may have particles of the one before, which are in the same part.
+  constexpr std::size_t kParts = 4, kFewBlocks = 256;
+  static_assert(kFewBlocks >= 2 * kParts);
+  if (!executor || blocks.size() < kFewBlocks) return work(blocks);
+  std::array<LoneResponse<Real>, kParts> of_part;
+  run_parts(executor, blocks.size(), kParts,
+            [&](std::size_t part, std::size_t first, std::size_t last) {
+              of_part[part] = work(blocks.subspan(first, last - first));
+            });
+  LoneResponse<Real> whole;
+  for (const LoneResponse<Real>& part : of_part) {
+    whole.largest = std::max(whole.largest, part.largest);
+    whole.within = whole.within && part.within;
+    whole.friction_evaluations += part.friction_evaluations;
+  }
+  return whole;
+}
+
 }  // namespace
 
 template <class Real>
@@ -79,28 +100,16 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
 
 template <class Real>
 LoneResponse<Real> LoneRows<Real>::respond(const LonePass<Real>& pass, Executor* executor) {
-  // The last block may have particles of the one before, which are in the same part.
-  constexpr std::size_t kParts = 4, kFewBlocks = 256;
-  static_assert(kFewBlocks >= 2 * kParts);
-  const std::span<LoneBlock<Real>> blocks = blocks_;
-  if (!executor || blocks.size() < kFewBlocks) return WEFT_RUN(step, Real)(blocks, pass);
-  std::array<LoneResponse<Real>, kParts> of_part;
-  const auto work = [&](std::size_t part, std::size_t first, std::size_t last) {
-    of_part[part] = WEFT_RUN(step, Real)(blocks.subspan(first, last - first), pass);
-  };
-  run_parts(executor, blocks.size(), kParts, work);
-  LoneResponse<Real> whole;
-  for (const LoneResponse<Real>& part : of_part) {
-    whole.largest = std::max(whole.largest, part.largest);
-    whole.within = whole.within && part.within;
-    whole.friction_evaluations += part.friction_evaluations;
-  }
-  return whole;
+  return in_parts<Real>(blocks_, executor, [&pass](std::span<LoneBlock<Real>> part) {
+    return WEFT_RUN(step, Real)(part, pass);
+  });
 }
 
 template <class Real>
-LoneResponse<Real> LoneRows<Real>::sweep(const LonePass<Real>& pass) {
-  return WEFT_RUN(sweep, Real)(blocks_, pass);
+LoneResponse<Real> LoneRows<Real>::sweep(const LonePass<Real>& pass, Executor* executor) {
+  return in_parts<Real>(blocks_, executor, [&pass](std::span<LoneBlock<Real>> part) {
+    return WEFT_RUN(sweep, Real)(part, pass);
+  });
 }
 
 /// The first block, not before number `block`, with a particle that could cross its plane; the

@@ -80,7 +80,7 @@ class LoneRows {
   /// @param executor  shares many rows out to its threads; may be null
   LoneResponse<Real> respond(const LonePass<Real>& pass, Executor* executor);
   /// One more response, after others have changed velocities. Ways are not measured.
-  LoneResponse<Real> sweep(const LonePass<Real>& pass);
+  LoneResponse<Real> sweep(const LonePass<Real>& pass, Executor* executor);
   /// Calls visit(row) for rows whose particles could cross their planes.
   /// @param travel2  squared way of each particle [m^2]
   template <class Visit>

@@ -259,7 +259,7 @@ Real sweep_rows(ObjectSolve<Real>& solve, bool again) {
   Real largest = 0;
   if (solve.response.lone_apart && !again) {
     const LoneResponse<Real> lone =
-        rows.lone.sweep(lone_pass(solve.reach, solve.state, Real(0), false));
+        rows.lone.sweep(lone_pass(solve.reach, solve.state, Real(0), false), solve.executor);
     largest = lone.largest;
     solve.friction_evaluations += lone.friction_evaluations;
   }

@@ -52,6 +52,7 @@ struct ObjectSolve {
   ObjectMotion<Real>& motion;  ///< takes the reactions
   RowReach<Real>& reach;       ///< of it lone rows measure the displacements
   ContactLog& log;
+  Executor* executor;  ///< runs parts of the work on its threads; may be null
   ClothState<Real>& state;
   std::uint64_t friction_evaluations = 0;
 };
