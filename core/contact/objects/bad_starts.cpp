@@ -108,7 +108,7 @@ bool still_leaves(Index cloth, std::size_t collider, std::vector<BadStart<Real>>
 template <class Real>
 void add_inside(const ObjectRowSource<Real>& source, Index i, const Vec3<Real>& normal,
                 Real distance, std::size_t collider, std::vector<Index>& inside,
-                ObjectRows<Real>& rows) {
+                RowList<Real>& rows) {
   assert(distance < 0);
   const Index cloth = cloth_of(source.cloths, i);
   const Vec3<Real>& x = source.state.x[at_index(i)];

@@ -40,6 +40,6 @@ bool still_leaves(Index cloth, std::size_t collider, std::vector<BadStart<Real>>
 template <class Real>
 void add_inside(const ObjectRowSource<Real>& source, Index particle, const Vec3<Real>& normal,
                 Real distance, std::size_t collider, std::vector<Index>& inside,
-                ObjectRows<Real>& rows);
+                RowList<Real>& rows);
 
 }  // namespace weft

@@ -93,6 +93,7 @@ void mark_near(const ContactCloths<Real>& cloths, Clearance<Real>& clearance,
   for (std::size_t i = 0; i < n; ++i)
     c.near[i] = c.distance[i] <= cloths.thickness + c.span[i] + c.skin[i];
   near.active = c.near;
+  near.place.resize(n);
   near.edges.clear();
   near.triangles.clear();
   near.particles.clear();
@@ -109,7 +110,9 @@ void mark_near(const ContactCloths<Real>& cloths, Clearance<Real>& clearance,
         p, {number(near.particles), 0}, {number(near.edges), 0}, {number(near.triangles), 0}};
     for (Index k = patch.particles.first; k < patch.particles.end(); ++k) {
       const Index i = patches.particles[at_index(k)];
-      if (near.active[at_index(i)]) near.particles.push_back(i);
+      if (!near.active[at_index(i)]) continue;
+      near.place[at_index(i)] = number(near.particles);
+      near.particles.push_back(i);
     }
     for (Index e = patch.edges.first; e < patch.edges.end(); ++e) {
       const Edge& ends = patches.edges[at_index(e)];

@@ -43,6 +43,7 @@ struct NearFeatures {
   std::vector<char> active;  ///< of each particle: near, or joined to one that is
   std::vector<char> paired;  ///< in a candidate pair, or near an analytic shape
   std::vector<Index> particles, edges, triangles;
+  std::vector<Index> place;  ///< of each active particle in their list
   std::vector<NearPatch> patches;
   std::vector<Vec3Array<Real>> x_own;  ///< active particles in the frame of each displaced mesh [m]
 };

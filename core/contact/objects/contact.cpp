@@ -122,8 +122,8 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   reach_.travel2.resize(n);
   scratch_.moved.resize(n);
   const auto allow = [&] {
-    return allow_rows(cloths_, shapes_, motion_, state, dt, clearance_, near_, scratch_.moved,
-                      reach_.reach);
+    return allow_rows(cloths_, shapes_, motion_, state, dt, clearance_, near_, executor_,
+                      scratch_.moved, reach_.reach);
   };
   if (!clearance_.collected || !allow()) {
     collect(state, dt, profile);
@@ -141,9 +141,9 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   for (std::size_t i = 0; i < n; ++i) scratch_.gap[i] = cloths_.thickness + reach_.reach[i];
   const ObjectRowSource<Real> source{cloths_, shapes_, state,        clearance_,
                                      near_,   pairs_,  reach_.reach, motion_.any_tracked};
-  add_particle_rows(source, scratch_, rows_, profile);
-  add_features_on_rounds(source, scratch_, rows_, profile);
-  add_features_on_meshes(source, scratch_, rows_, profile);
+  add_particle_rows(source, executor_, scratch_, rows_, profile);
+  add_features_on_rounds(source, executor_, scratch_, rows_, profile);
+  add_features_on_meshes(source, executor_, scratch_, rows_, profile);
   finish_rows(cloths_, n, rows_);
   reach_.made = true;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
 
 #include "core/contact/feature_pair.h"
 #include "core/contact/objects/apart.h"
@@ -10,6 +11,7 @@
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/corners.h"
 #include "core/contact/objects/object_rows.h"
+#include "core/contact/objects/row_parts.h"
 #include "core/instantiate.h"
 
 namespace weft {
@@ -91,7 +93,7 @@ bool may_meet(const ObjectRowSource<Real>& source, const ClothFeature<Real>& fea
 template <class Real, std::size_t Count, class Visit>
 void for_pairs_that_may_meet(const ObjectRowSource<Real>& source, const RowScratch<Real>& scratch,
                              const std::vector<std::array<Index, Count>>& features,
-                             const std::vector<ContactCandidate<Real>>& pairs,
+                             std::span<const ContactCandidate<Real>> pairs,
                              const std::vector<Rise<Real>>& rises, double span,
                              std::size_t collider, Visit&& visit) {
   ClothFeature<Real> feature;
@@ -116,11 +118,12 @@ bool are_apart(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c, co
   return (closest.p - closest.q).squaredNorm() > most * most;
 }
 
-/// Adds the rows of edges of the cloth with ridges of mesh m. @return closest points computed
+/// Adds the rows of pairs of edges of the cloth with ridges of mesh m. @return closest points
+/// computed
 template <class Real>
-std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
-                                const RowScratch<Real>& scratch, std::size_t m,
-                                ObjectRows<Real>& rows) {
+std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source, std::size_t m,
+                                std::span<const ContactCandidate<Real>> pairs,
+                                const RowScratch<Real>& scratch, RowList<Real>& rows) {
   std::uint64_t tests = 0;
   const MeshShape<Real>& mesh = *source.shapes.meshes[m];
   const std::size_t collider = source.shapes.mesh_collider[m];
@@ -160,16 +163,17 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source,
             {static_cast<Real>(s.weight[0]), static_cast<Real>(s.weight[1]), 0}, barrier, collider,
             responds, rows);
   };
-  for_pairs_that_may_meet(source, scratch, source.cloths.patches.edges,
-                          source.pairs.of_mesh[m].edges, mesh.edge_rises, kEdgeSpan, collider, add);
+  for_pairs_that_may_meet(source, scratch, source.cloths.patches.edges, pairs, mesh.edge_rises,
+                          kEdgeSpan, collider, add);
   return tests;
 }
 
-/// Adds the rows of triangles of the cloth with corners of mesh m. @return closest points computed
+/// Adds the rows of pairs of triangles of the cloth with corners of mesh m. @return closest points
+/// computed
 template <class Real>
-std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
-                                    const RowScratch<Real>& scratch, std::size_t m,
-                                    ObjectRows<Real>& rows) {
+std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source, std::size_t m,
+                                    std::span<const ContactCandidate<Real>> pairs,
+                                    const RowScratch<Real>& scratch, RowList<Real>& rows) {
   std::uint64_t tests = 0;
   const MeshShape<Real>& mesh = *source.shapes.meshes[m];
   const std::size_t collider = source.shapes.mesh_collider[m];
@@ -196,23 +200,33 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source,
     for (std::size_t n = 0; n < 3; ++n) weights[n] = static_cast<Real>(-s.weight[n + 1]);
     add_row(source, {t[0], t[1], t[2]}, weights, barrier, collider, responds, rows);
   };
-  for_pairs_that_may_meet(source, scratch, source.cloths.patches.triangles,
-                          source.pairs.of_mesh[m].triangles, mesh.vertex_rises, kTriangleSpan,
-                          collider, add);
+  for_pairs_that_may_meet(source, scratch, source.cloths.patches.triangles, pairs,
+                          mesh.vertex_rises, kTriangleSpan, collider, add);
   return tests;
 }
 
 }  // namespace
 
 template <class Real>
-void add_features_on_meshes(const ObjectRowSource<Real>& source, const RowScratch<Real>& scratch,
-                            ObjectRows<Real>& rows, Profile& profile) {
+void add_features_on_meshes(const ObjectRowSource<Real>& source, Executor* executor,
+                            RowScratch<Real>& scratch, RowList<Real>& rows, Profile& profile) {
   assert(scratch.inside.size() == source.state.x.size() && "rows of particles come first");
   const std::size_t meshes = source.shapes.meshes.size();
-  std::uint64_t tests = 0;
-  for (std::size_t m = 0; m < meshes; ++m) tests += add_edges_on_mesh(source, scratch, m, rows);
-  for (std::size_t m = 0; m < meshes; ++m) tests += add_triangles_on_mesh(source, scratch, m, rows);
-  profile[Stage::narrow_phase].work += tests;
+  const auto add = [&](const std::vector<ContactCandidate<Real>>& pairs, auto&& add_pairs) {
+    profile[Stage::narrow_phase].work += make_in_parts(
+        executor, pairs.size(), scratch, rows,
+        [&](std::size_t first, std::size_t last, ObjectRowPart<Real>& part, RowList<Real>& into) {
+          part.tests = add_pairs(std::span(pairs).subspan(first, last - first), into);
+        });
+  };
+  for (std::size_t m = 0; m < meshes; ++m)
+    add(source.pairs.of_mesh[m].edges, [&](auto pairs, RowList<Real>& into) {
+      return add_edges_on_mesh<Real>(source, m, pairs, scratch, into);
+    });
+  for (std::size_t m = 0; m < meshes; ++m)
+    add(source.pairs.of_mesh[m].triangles, [&](auto pairs, RowList<Real>& into) {
+      return add_triangles_on_mesh<Real>(source, m, pairs, scratch, into);
+    });
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(add_features_on_meshes)

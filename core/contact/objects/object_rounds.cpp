@@ -11,6 +11,7 @@
 #include "core/contact/objects/constants.h"
 #include "core/contact/objects/corners.h"
 #include "core/contact/objects/object_rows.h"
+#include "core/contact/objects/row_parts.h"
 #include "core/geometry/distance.h"
 #include "core/instantiate.h"
 
@@ -47,6 +48,20 @@ Real span2_of(const ObjectRowSource<Real>& source, std::span<const Index> corner
   return part * part * 2 * both2 * static_cast<Real>(kSurely);
 }
 
+/// That of all near features of a kind.
+/// @param features  of the cloth
+template <class Real, class Feature>
+void measure_spans(const ObjectRowSource<Real>& source, Executor* executor,
+                   const std::vector<Feature>& features, const std::vector<Index>& near,
+                   std::vector<Real>& spans2) {
+  spans2.resize(near.size());
+  const auto measure = [&](std::size_t, std::size_t first, std::size_t last) {
+    for (std::size_t n = first; n < last; ++n)
+      spans2[n] = span2_of<Real>(source, features[at_index(near[n])]);
+  };
+  run_parts(executor, near.size(), parts_of(near.size(), kMadeAtLeast), measure);
+}
+
 /// Whether corners alone keep off a round object: the cheap form of Corners::clear.
 /// @param least  distance that they keep from its core [m]
 /// @param most   that a point must be from there to be off [m]
@@ -59,14 +74,15 @@ bool is_clear(Real span2, Real least, Real most) {
 /// particle within reach of the object is kept over a plane.
 template <class Real>
 void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>& rod,
-                   RowScratch<Real>& scratch) {
+                   Executor* executor, RowScratch<Real>& scratch) {
   const ClothState<Real>& state = source.state;
   const Vec3<Real>&a = rod.a, &b = rod.b;
   const Real radius = rod.radius;
   const Real rounding = radius * std::numeric_limits<Real>::epsilon() * Real(kCoreRoundings);
   scratch.core.resize(state.x.size());
   scratch.least_core.resize(state.x.size());
-  for (const Index k : source.near.particles) {
+  const std::vector<Index>& near = source.near.particles;
+  const auto measure = [&](Index k) {
     const auto i = at_index(k);
     Real &core = scratch.core[i], &least = scratch.least_core[i];
     const Vec3<Real> from = state.x[i] - a;
@@ -76,16 +92,22 @@ void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>&
       least = std::max(
           least, radius + kept_height(source, k, core - radius) - source.clearance.smallest_gap);
     least -= rounding;
-  }
+  };
+  run_parts(executor, near.size(), parts_of(near.size(), kMadeAtLeast),
+            [&](std::size_t, std::size_t first, std::size_t last) {
+              for (std::size_t n = first; n < last; ++n) measure(near[n]);
+            });
 }
 
+/// Adds the rows of near edges from number `first` to before `last`.
 template <class Real>
 void add_edges_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& source,
-                  const RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
+                  std::size_t first, std::size_t last, const RowScratch<Real>& scratch,
+                  RowList<Real>& rows) {
   const Vec3d base = in_double(rod.a), tip = in_double(rod.b);
   const Real most = rod.radius + source.clearance.smallest_gap;
   const Real push = source.cloths.thickness * Real(kRoomForPush);
-  for (std::size_t n = 0; n < source.near.edges.size(); ++n) {
+  for (std::size_t n = first; n < last; ++n) {
     const Edge& e = source.cloths.patches.edges[at_index(source.near.edges[n])];
     const Real least = nearest(scratch.least_core, e);
     if (is_clear(scratch.edge_spans2[n], least, most)) continue;
@@ -116,7 +138,7 @@ void add_edges_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& sou
 template <class Real>
 void add_triangle_row(const ObjectRowSource<Real>& source, const Triangle& t, Real reach,
                       const RoundObject<Real>& rod, const Vec3<Real>& centre, bool responds,
-                      ObjectRows<Real>& rows) {
+                      RowList<Real>& rows) {
   const auto at = [&](std::size_t n) { return in_double(source.state.x[at_index(t[n])]); };
   const Vec3d q = in_double(centre);
   const TrianglePoint<double> c = closest_on_triangle<double>(q, at(0), at(1), at(2));
@@ -131,13 +153,16 @@ void add_triangle_row(const ObjectRowSource<Real>& source, const Triangle& t, Re
           rows);
 }
 
-/// Adds the rows of the centre of a ball, or of both ends of a rod, with the inside of triangles.
+/// Adds the rows of the centre of a ball, or of both ends of a rod, with the inside of near
+/// triangles from number `first` to before `last`. @return closest points computed
 template <class Real>
-void add_triangles_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& source,
-                      const RowScratch<Real>& scratch, ObjectRows<Real>& rows, Profile& profile) {
+std::uint64_t add_triangles_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& source,
+                               std::size_t first, std::size_t last, const RowScratch<Real>& scratch,
+                               RowList<Real>& rows) {
+  std::uint64_t tests = 0;
   const Real most = rod.radius + source.clearance.smallest_gap;
   const Real push = source.cloths.thickness * Real(kRoomForPush);
-  for (std::size_t n = 0; n < source.near.triangles.size(); ++n) {
+  for (std::size_t n = first; n < last; ++n) {
     const Triangle& t = source.cloths.patches.triangles[at_index(source.near.triangles[n])];
     const Real least = nearest(scratch.least_core, t);
     if (is_clear(scratch.triangle_spans2[n], least, most)) continue;
@@ -148,34 +173,42 @@ void add_triangles_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>&
     const bool responds =
         !corners.as_lying(kTriangleSpan, Real(0)).clear(nearest(scratch.core, t), rod.radius);
     const auto add = [&](const Vec3<Real>& centre) {
-      ++profile[Stage::narrow_phase].work;
+      ++tests;
       add_triangle_row(source, t, corners.reach, rod, centre, responds, rows);
     };
     add(rod.a);
     if (!rod.is_ball) add(rod.b);
   }
+  return tests;
 }
 
 }  // namespace
 
 template <class Real>
-void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real>& scratch,
-                            ObjectRows<Real>& rows, Profile& profile) {
+void add_features_on_rounds(const ObjectRowSource<Real>& source, Executor* executor,
+                            RowScratch<Real>& scratch, RowList<Real>& rows, Profile& profile) {
   const ObjectShapes<Real>& shapes = source.shapes;
   if (shapes.rounds.empty()) return;
   assert(scratch.inside.size() == source.state.x.size() && "rows of particles come first");
   const ClothPatches& patches = source.cloths.patches;
-  scratch.edge_spans2.clear();
-  scratch.triangle_spans2.clear();
-  for (const Index k : source.near.edges)
-    scratch.edge_spans2.push_back(span2_of<Real>(source, patches.edges[at_index(k)]));
-  for (const Index k : source.near.triangles)
-    scratch.triangle_spans2.push_back(span2_of<Real>(source, patches.triangles[at_index(k)]));
+  const NearFeatures<Real>& near = source.near;
+  measure_spans(source, executor, patches.edges, near.edges, scratch.edge_spans2);
+  measure_spans(source, executor, patches.triangles, near.triangles, scratch.triangle_spans2);
+  std::uint64_t tests = 0;
   for (const RoundObject<Real>& rod : shapes.rounds) {
-    measure_cores(source, rod, scratch);
-    add_edges_on(rod, source, scratch, rows);
-    add_triangles_on(rod, source, scratch, rows, profile);
+    measure_cores(source, rod, executor, scratch);
+    make_in_parts(
+        executor, near.edges.size(), scratch, rows,
+        [&](std::size_t first, std::size_t last, ObjectRowPart<Real>&, RowList<Real>& into) {
+          add_edges_on(rod, source, first, last, scratch, into);
+        });
+    tests += make_in_parts(
+        executor, near.triangles.size(), scratch, rows,
+        [&](std::size_t first, std::size_t last, ObjectRowPart<Real>& part, RowList<Real>& into) {
+          part.tests = add_triangles_on(rod, source, first, last, scratch, into);
+        });
   }
+  profile[Stage::narrow_phase].work += tests;
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(add_features_on_rounds)

@@ -10,6 +10,7 @@
 #include "core/contact/objects/apart.h"
 #include "core/contact/objects/bad_starts.h"
 #include "core/contact/objects/constants.h"
+#include "core/contact/objects/row_parts.h"
 #include "core/instantiate.h"
 
 namespace weft {
@@ -30,7 +31,7 @@ bool shares_nearest(const MeshShape<Real>& mesh, const MeshDistance<Real>& d, In
 /// @param mobility  of the row's point [1/kg]
 template <class Real>
 void follow(const ContactRow<Real>& row, double top, const ColliderFrame<Real>& frame,
-            Real mobility, ObjectRows<Real>& rows) {
+            Real mobility, RowList<Real>& rows) {
   const Vec3d normal = row.normal.template cast<double>();
   const Vec3d shift = frame.pose.position - frame.pose.rotation * frame.pivot;
   MovingRow<Real> moving;
@@ -47,19 +48,34 @@ Real reach_of(const ObjectRowSource<Real>& source, Index i) {
   return source.cloths.thickness + source.reach[at_index(i)];
 }
 
-/// Finds the triangles of a mesh that a particle may touch while the rows hold.
-/// @return number of the nearest one in scratch.nearby
+/// Finds where the pairs of near particles begin, from number `first` on.
 template <class Real>
-std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Index i,
-                        RowScratch<Real>& scratch) {
+void find_cursors(const ObjectRowSource<Real>& source, std::size_t first,
+                  ObjectRowPart<Real>& part) {
+  part.cursor.clear();
+  for (const MeshCandidates<Real>& of_mesh : source.pairs.of_mesh) {
+    const auto& pairs = of_mesh.particles;  // in the order of the near particles
+    const auto begin = std::partition_point(pairs.begin(), pairs.end(), [&](const auto& pair) {
+      return at_index(source.near.place[at_index(pair.cloth)]) < first;
+    });
+    part.cursor.push_back(static_cast<std::size_t>(begin - pairs.begin()));
+  }
+}
+
+/// Finds the triangles of a mesh that a particle may touch while the rows hold.
+/// @param moved  by the particle since the collection [m]
+/// @return number of the nearest one in part.nearby
+template <class Real>
+std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Index i, Real moved,
+                        ObjectRowPart<Real>& part) {
   const auto p = at_index(i);
   const Vec3<Real>& x = in_frame_of(source.shapes, source.near, m, source.state.x)[p];
-  const Real moved = scratch.moved[p] + source.shapes.mesh_frame(m).travel_since_pairs;
+  moved += source.shapes.mesh_frame(m).travel_since_pairs;
   // A particle that is inside looks for the way out, however far it is.
   const bool outside = source.clearance.distance[p] >= 0;
   const auto& pairs = source.pairs.of_mesh[m].particles;  // in the order of the active particles
-  std::vector<MeshDistance<Real>>& nearby = scratch.nearby;
-  std::size_t& cursor = scratch.cursor[m];
+  std::vector<MeshDistance<Real>>& nearby = part.nearby;
+  std::size_t& cursor = part.cursor[m];
   std::size_t nearest = 0;
   nearby.clear();
   for (; cursor < pairs.size() && pairs[cursor].cloth == i; ++cursor) {
@@ -76,12 +92,13 @@ std::size_t find_nearby(const ObjectRowSource<Real>& source, std::size_t m, Inde
 /// @return closest points computed
 template <class Real>
 std::uint64_t add_mesh_rows(const ObjectRowSource<Real>& source, std::size_t m, Index i,
-                            RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
+                            RowScratch<Real>& scratch, ObjectRowPart<Real>& part,
+                            RowList<Real>& rows) {
   const MeshShape<Real>& mesh = *source.shapes.meshes[m];
   const std::size_t collider = source.shapes.mesh_collider[m];
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
-  const std::size_t nearest = find_nearby(source, m, i, scratch);
-  const std::vector<MeshDistance<Real>>& nearby = scratch.nearby;
+  const std::size_t nearest = find_nearby(source, m, i, scratch.moved[at_index(i)], part);
+  const std::vector<MeshDistance<Real>>& nearby = part.nearby;
   if (nearby.empty()) return 0;
   Real& gap = scratch.gap[at_index(i)];
   gap = std::min(gap, nearby[nearest].distance);
@@ -109,10 +126,23 @@ std::uint64_t add_mesh_rows(const ObjectRowSource<Real>& source, std::size_t m, 
   return nearby.size();
 }
 
+/// Rows of one particle with planes.
+template <class Real>
+void add_plane_rows(const ObjectRowSource<Real>& source, Index i, RowList<Real>& rows) {
+  const Vec3<Real>& p = source.state.x[at_index(i)];
+  for (const ObjectPlane<Real>& plane : source.shapes.planes) {
+    const Real distance = plane.normal.dot(p) - plane.offset;
+    if (distance > reach_of(source, i)) continue;
+    add_row(source, {i}, {Real(1), 0, 0},
+            {plane.normal, static_cast<double>(plane.offset), distance}, plane.collider, true,
+            rows);
+  }
+}
+
 /// Row of one particle with a ball or a rod.
 template <class Real>
 void add_round_row(const ObjectRowSource<Real>& source, Index i, const RoundObject<Real>& rod,
-                   RowScratch<Real>& scratch, ObjectRows<Real>& rows) {
+                   RowScratch<Real>& scratch, RowList<Real>& rows) {
   const Vec3<Real>& x = source.state.x[at_index(i)];
   const Vec3<Real>&from = rod.a, &to = rod.b;
   const Real reach = reach_of(source, i);
@@ -140,36 +170,40 @@ template <class Real>
 bool allow_rows(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& shapes,
                 const ObjectMotion<Real>& motion, const ClothState<Real>& state, Real dt,
                 const Clearance<Real>& clearance, const NearFeatures<Real>& near,
-                std::vector<Real>& moved, std::vector<Real>& reach) {
+                Executor* executor, std::vector<Real>& moved, std::vector<Real>& reach) {
   assert(clearance.collected && reach.size() == state.x.size());
   const bool edges_matter = !(shapes.rounds.empty() && shapes.meshes.empty());
   const Real thickness = cloths.thickness;
-  bool enough = true;
-  for (std::size_t i = 0; i < state.x.size(); ++i) {
-    moved[i] = (state.x[i] - clearance.x[i]).norm();
-    const Real left = clearance.skin[i] - moved[i] - motion.since_pairs;
-    const Real step = state.v[i].norm() * dt;
-    // An object and what it carries along both go its way.
-    enough &= left >= step * Real(1.5) + motion.coming * Real(3);
-    Real wanted = (step + motion.coming) * Real(kRowSubsteps);
-    if (edges_matter && !motion.any_tracked)
-      wanted =
-          std::min(wanted, std::max(thickness * Real(kRowThicknesses), step * Real(kFewSubsteps)));
-    wanted = std::max(wanted, thickness / 2);
-    // A particle that is clear of everything may go farther without touching.
-    if (shapes.meshes.empty() && near.paired[i] && wanted < left)
-      wanted = std::max(
-          wanted, (analytic_clearance(shapes, state.x[i], left / Real(kFreePart)) - thickness) *
-                      Real(kFreePart));
-    reach[i] = near.paired[i] ? std::min(left, wanted) : left;
-  }
-  return enough;
+  std::array<bool, kMostParts> short_of{};
+  const auto allow = [&](std::size_t part, std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) {
+      moved[i] = (state.x[i] - clearance.x[i]).norm();
+      const Real left = clearance.skin[i] - moved[i] - motion.since_pairs;
+      const Real step = state.v[i].norm() * dt;
+      // An object and what it carries along both go its way.
+      short_of[part] |= !(left >= step * Real(1.5) + motion.coming * Real(3));
+      Real wanted = (step + motion.coming) * Real(kRowSubsteps);
+      if (edges_matter && !motion.any_tracked)
+        wanted = std::min(wanted,
+                          std::max(thickness * Real(kRowThicknesses), step * Real(kFewSubsteps)));
+      wanted = std::max(wanted, thickness / 2);
+      // A particle that is clear of everything may go farther without touching.
+      if (shapes.meshes.empty() && near.paired[i] && wanted < left)
+        wanted = std::max(
+            wanted, (analytic_clearance(shapes, state.x[i], left / Real(kFreePart)) - thickness) *
+                        Real(kFreePart));
+      reach[i] = near.paired[i] ? std::min(left, wanted) : left;
+    }
+  };
+  const std::size_t count = state.x.size();
+  run_parts(executor, count, parts_of(count, kAllowedAtLeast), allow);
+  return std::find(short_of.begin(), short_of.end(), true) == short_of.end();
 }
 
 template <class Real>
 void add_row(const ObjectRowSource<Real>& source, std::initializer_list<Index> particles,
              const std::array<Real, 3>& weights, const ContactBarrier<Real>& barrier,
-             std::size_t collider, bool responds, ObjectRows<Real>& rows) {
+             std::size_t collider, bool responds, RowList<Real>& rows) {
   assert(particles.size() >= 1 && particles.size() <= 3);
   const ClothState<Real>& state = source.state;
   const ColliderFrame<Real>& frame = source.shapes.frames[collider];
@@ -207,28 +241,26 @@ void add_row(const ObjectRowSource<Real>& source, std::initializer_list<Index> p
 }
 
 template <class Real>
-void add_particle_rows(const ObjectRowSource<Real>& source, RowScratch<Real>& scratch,
-                       ObjectRows<Real>& rows, Profile& profile) {
+void add_particle_rows(const ObjectRowSource<Real>& source, Executor* executor,
+                       RowScratch<Real>& scratch, RowList<Real>& rows, Profile& profile) {
   const ObjectShapes<Real>& shapes = source.shapes;
-  std::uint64_t tests = 0;
+  const std::vector<Index>& near = source.near.particles;
   for (BadStart<Real>& exit : rows.exits) exit.particles = 0;
-  scratch.cursor.assign(shapes.meshes.size(), 0);
   scratch.inside.assign(source.state.x.size(), kOutside);
-  for (const Index i : source.near.particles) {
-    const Vec3<Real>& p = source.state.x[at_index(i)];
-    for (const ObjectPlane<Real>& plane : shapes.planes) {
-      const Real distance = plane.normal.dot(p) - plane.offset;
-      if (distance <= reach_of(source, i))
-        add_row(source, {i}, {Real(1), 0, 0},
-                {plane.normal, static_cast<double>(plane.offset), distance}, plane.collider, true,
-                rows);
+  const auto make = [&](std::size_t first, std::size_t last, ObjectRowPart<Real>& part,
+                        RowList<Real>& into) {
+    find_cursors(source, first, part);
+    for (std::size_t n = first; n < last; ++n) {
+      const Index i = near[n];
+      add_plane_rows(source, i, into);
+      for (const RoundObject<Real>& rod : shapes.rounds)
+        add_round_row(source, i, rod, scratch, into);
+      part.tests += shapes.planes.size() + shapes.rounds.size();
+      for (std::size_t m = 0; m < shapes.meshes.size(); ++m)
+        part.tests += add_mesh_rows(source, m, i, scratch, part, into);
     }
-    for (const RoundObject<Real>& rod : shapes.rounds) add_round_row(source, i, rod, scratch, rows);
-    tests += shapes.planes.size() + shapes.rounds.size();
-    for (std::size_t m = 0; m < shapes.meshes.size(); ++m)
-      tests += add_mesh_rows(source, m, i, scratch, rows);
-  }
-  profile[Stage::narrow_phase].work += tests;
+  };
+  profile[Stage::narrow_phase].work += make_in_parts(executor, near.size(), scratch, rows, make);
 }
 
 template <class Real>

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <vector>
@@ -14,6 +16,8 @@
 #include "core/contact/objects/object_motion.h"
 #include "core/contact/objects/object_pairs.h"
 #include "core/contact/objects/object_shapes.h"
+#include "core/contact/parts.h"
+#include "core/executor.h"
 #include "core/profile.h"
 #include "core/types.h"
 
@@ -30,21 +34,26 @@ struct ContactBarrier {
   Real keep = 0;                            ///< height that particles keep besides [m]
 };
 
-/// All rows, and the cloths that started inside objects.
+/// Rows, and the cloths that started inside objects.
 template <class Real>
-struct ObjectRows {
+struct RowList {
   std::vector<ContactRow<Real>> all;
   std::vector<MovingRow<Real>> moving;
+  std::vector<BadStart<Real>> exits;
+};
+
+/// All rows, and what is known of them together.
+template <class Real>
+struct ObjectRows : RowList<Real> {
   std::vector<RowRoom<Real>> rooms;  ///< of each row
   LoneRows<Real> lone;               ///< rows that no other row influences
   std::vector<std::size_t> joint;    ///< all others
-  std::vector<BadStart<Real>> exits;
 
   const MovingRow<Real>* moving_of(const ContactRow<Real>& row) const {
-    return row.mover == kNone ? nullptr : &moving[at_index(row.mover)];
+    return row.mover == kNone ? nullptr : &this->moving[at_index(row.mover)];
   }
   MovingRow<Real>* moving_of(const ContactRow<Real>& row) {
-    return row.mover == kNone ? nullptr : &moving[at_index(row.mover)];
+    return row.mover == kNone ? nullptr : &this->moving[at_index(row.mover)];
   }
 };
 
@@ -70,53 +79,62 @@ struct ObjectRowSource {
   bool objects_move;
 };
 
+/// Rows that one part of the work has made, and what it needs for that.
+template <class Real>
+struct ObjectRowPart {
+  RowList<Real> rows;
+  std::vector<std::size_t> cursor;         ///< place in each mesh's particle pairs
+  std::vector<MeshDistance<Real>> nearby;  ///< triangles near one particle
+  std::uint64_t tests = 0;                 ///< closest points computed
+};
+
 /// What is known of particles and features while their rows are made.
 template <class Real>
 struct RowScratch {
-  std::vector<Real> moved;          ///< by each particle since the collection [m]
-  std::vector<Real> gap;            ///< of each from all meshes, at least [m]
-  std::vector<Index> inside;        ///< of each the collider that it is inside of; see note_inside
-  std::vector<std::size_t> cursor;  ///< place in each mesh's particle pairs
-  std::vector<MeshDistance<Real>> nearby;  ///< triangles near one particle
+  std::vector<Real> moved;    ///< by each particle since the collection [m]
+  std::vector<Real> gap;      ///< of each from all meshes, at least [m]
+  std::vector<Index> inside;  ///< of each the collider that it is inside of; see note_inside
   /// Of the near ones: no point of one is farther from its nearest corner, squared, even when
   /// pushed; a cheap bound for round objects [m^2].
   std::vector<Real> edge_spans2, triangle_spans2;
   /// Distance of active particles from the core of a round object, and what they keep of it [m].
   std::vector<Real> core, least_core;
+  std::array<ObjectRowPart<Real>, kMostParts> parts;
 };
 
 /// Decides how far particles may go while the rows hold.
+/// @param executor  runs parts of the work on its threads; may be null, here and below
 /// @return whether the pairs hold for as long
 template <class Real>
 bool allow_rows(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& shapes,
                 const ObjectMotion<Real>& motion, const ClothState<Real>& state, Real dt,
                 const Clearance<Real>& clearance, const NearFeatures<Real>& near,
-                std::vector<Real>& moved, std::vector<Real>& reach);
+                Executor* executor, std::vector<Real>& moved, std::vector<Real>& reach);
 
 /// Adds a row. What its plane is worth is determined by the heights of the particles over it, in
 /// double precision, whatever it was found by.
 template <class Real>
 void add_row(const ObjectRowSource<Real>& source, std::initializer_list<Index> particles,
              const std::array<Real, 3>& weights, const ContactBarrier<Real>& barrier,
-             std::size_t collider, bool responds, ObjectRows<Real>& rows);
+             std::size_t collider, bool responds, RowList<Real>& rows);
 
 /// Adds the rows of single particles with all objects.
 template <class Real>
-void add_particle_rows(const ObjectRowSource<Real>& source, RowScratch<Real>& scratch,
-                       ObjectRows<Real>& rows, Profile& profile);
+void add_particle_rows(const ObjectRowSource<Real>& source, Executor* executor,
+                       RowScratch<Real>& scratch, RowList<Real>& rows, Profile& profile);
 
 /// Adds the rows of edges and triangles with ridges and corners of meshes. Each pair that could
 /// meet while the rows hold gets a plane that proves it apart; it also responds where particles
 /// alone do not carry the cloth.
 template <class Real>
-void add_features_on_meshes(const ObjectRowSource<Real>& source, const RowScratch<Real>& scratch,
-                            ObjectRows<Real>& rows, Profile& profile);
+void add_features_on_meshes(const ObjectRowSource<Real>& source, Executor* executor,
+                            RowScratch<Real>& scratch, RowList<Real>& rows, Profile& profile);
 
 /// Adds the rows of edges and triangles with balls and rods. On most of a smooth object particles
 /// alone keep the cloth off, and a cheap bound proves it.
 template <class Real>
-void add_features_on_rounds(const ObjectRowSource<Real>& source, RowScratch<Real>& scratch,
-                            ObjectRows<Real>& rows, Profile& profile);
+void add_features_on_rounds(const ObjectRowSource<Real>& source, Executor* executor,
+                            RowScratch<Real>& scratch, RowList<Real>& rows, Profile& profile);
 
 /// What the corners of an edge or a triangle keep to while the rows hold.
 template <class Real>
