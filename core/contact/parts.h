@@ -32,4 +32,11 @@ void run_parts(Executor* executor, std::size_t amount, std::size_t parts, Work&&
   });
 }
 
+/// Calls work(first, last) for ranges of items, of at least `each`.
+template <class Work>
+void run_ranges(Executor* executor, std::size_t amount, std::size_t each, Work&& work) {
+  run_parts(executor, amount, parts_of(amount, each),
+            [&](std::size_t, std::size_t first, std::size_t last) { work(first, last); });
+}
+
 }  // namespace weft

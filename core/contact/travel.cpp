@@ -55,6 +55,31 @@ bool run_travel_in_chunks(const TravelPass<Real>& pass, Executor* executor) {
   return std::all_of(within.begin(), within.end(), [](bool one) { return one; });
 }
 
+float run_deviation(const PathPass<float>& pass) {
+  return HWY_DYNAMIC_DISPATCH(deviation_f32)(pass);
+}
+
+double run_deviation(const PathPass<double>& pass) {
+  return HWY_DYNAMIC_DISPATCH(deviation_f64)(pass);
+}
+
+template <class Real>
+Real deviation_in_chunks(const PathPass<Real>& pass, Executor* executor) {
+  assert(pass.particles == 0 || (pass.x && pass.v && pass.base && pass.velocity));
+  if (!executor || pass.particles < kLeastSharedTravel) return run_deviation(pass);
+  std::array<Real, kTravelChunks> largest;
+  run_chunks(executor, static_cast<int>(kTravelChunks), [&](int chunk) {
+    const auto k = static_cast<std::size_t>(chunk);
+    const std::size_t first = pass.particles * k / kTravelChunks,
+                      last = pass.particles * (k + 1) / kTravelChunks;
+    PathPass<Real> own = pass;
+    own.particles = last - first;
+    for (const Real** numbers : {&own.x, &own.v, &own.base, &own.velocity}) *numbers += 3 * first;
+    largest[k] = run_deviation(own);
+  });
+  return *std::max_element(largest.begin(), largest.end());
+}
+
 }  // namespace
 
 bool measure_travel(const TravelPass<float>& pass, Executor* executor) {
@@ -65,12 +90,12 @@ bool measure_travel(const TravelPass<double>& pass, Executor* executor) {
   return run_travel_in_chunks(pass, executor);
 }
 
-float largest_deviation(const PathPass<float>& pass) {
-  return HWY_DYNAMIC_DISPATCH(deviation_f32)(pass);
+float largest_deviation(const PathPass<float>& pass, Executor* executor) {
+  return deviation_in_chunks(pass, executor);
 }
 
-double largest_deviation(const PathPass<double>& pass) {
-  return HWY_DYNAMIC_DISPATCH(deviation_f64)(pass);
+double largest_deviation(const PathPass<double>& pass, Executor* executor) {
+  return deviation_in_chunks(pass, executor);
 }
 
 }  // namespace weft

@@ -41,7 +41,8 @@ struct PathPass {
 };
 
 /// Largest component of any particle's displacement from its path after the drift [m]; ignores NaN.
-float largest_deviation(const PathPass<float>& pass);
-double largest_deviation(const PathPass<double>& pass);
+/// @param executor  distributes many particles to its threads; may be null
+float largest_deviation(const PathPass<float>& pass, Executor* executor);
+double largest_deviation(const PathPass<double>& pass, Executor* executor);
 
 }  // namespace weft

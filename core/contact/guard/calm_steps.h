@@ -4,6 +4,7 @@
 
 #include "core/cloth/cloth_state.h"
 #include "core/contact/guard/predicted_paths.h"
+#include "core/executor.h"
 #include "core/math/quad.h"
 #include "core/types.h"
 
@@ -44,20 +45,21 @@ struct Slack {
 /// Whether, while there are no pairs, all particles stay near their paths in the coming step.
 template <class Real>
 bool stays_calm(const CalmPaths<Real>& calm, const PredictedPaths<Real>& paths,
-                const ClothState<Real>& state, Real dt);
+                const ClothState<Real>& state, Real dt, Executor* executor);
 
 /// Notes the predicted paths for steps without pairs.
 template <class Real>
-void note_calm_paths(const PredictedPaths<Real>& paths, CalmSteps<Real>& steps);
+void note_calm_paths(const PredictedPaths<Real>& paths, Executor* executor, CalmSteps<Real>& steps);
 
 /// Whether no particle leaves the ball around its path or its region in the coming step, by a bound
 /// for all at once: what rests is not examined one by one.
 template <class Real>
 bool has_slack(const Slack<Real>& slack, const PredictedPaths<Real>& paths,
-               const ClothState<Real>& state, Real dt);
+               const ClothState<Real>& state, Real dt, Executor* executor);
 
 /// Notes where all particles are at the end of a step, if there is slack from there.
 template <class Real>
-void note_ends(const ClothState<Real>& state, Real dt, Real elapsed, Slack<Real>& slack);
+void note_ends(const ClothState<Real>& state, Real dt, Real elapsed, Executor* executor,
+               Slack<Real>& slack);
 
 }  // namespace weft

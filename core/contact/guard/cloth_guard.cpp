@@ -246,8 +246,8 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
   regions_.smallest_gap = smallest_gap_at(step_.from);
   search_.motion.radius = cloths_.reach + regions_.smallest_gap;
   search_.motion.margin = cloths_.margin;
-  begin_paths(step_, awake_, dt, cloths_.reach, cloths_.finest, paths_);
-  predict(Real(0), paths_, search_.motion);
+  begin_paths(step_, awake_, dt, cloths_.reach, cloths_.finest, executor_, paths_);
+  predict(Real(0), executor_, paths_, search_.motion);
   search_.boxes.forget();
   search_.tree.refit(search_.motion, true);
   const bool unseen = std::exchange(tangled_.unseen, false);
@@ -277,7 +277,7 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
   const StageTimer timer(profile, Stage::broad_phase, 0);
   ++counts_.renewals;
   begin_paths_of_strays(step_, dt, cloths_.reach, paths_);
-  predict(paths_.elapsed - dt, paths_, search_.motion);
+  predict(paths_.elapsed - dt, executor_, paths_, search_.motion);
   find_near_patches_of(paths_.strays, search_);
   pairs_.drop_of(paths_.strays, search_.changed);
   const std::size_t kept = pairs_.all.size();
@@ -301,21 +301,21 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
   ++step_.number;
   paths_.elapsed += dt;
   if (calm_.calm) {
-    if (stays_calm(calm_.paths, paths_, state, dt)) {
+    if (stays_calm(calm_.paths, paths_, state, dt, executor_)) {
       paths_.off_now = paths_.off;
       calm_.paths.time = paths_.elapsed;
       return;
     }
-    copy_in(calm_.x_before, step_.from, nullptr);
+    copy_in(calm_.x_before, step_.from, executor_);
   }
-  if (regions_.dirty.empty() && has_slack(slack_, paths_, state, dt)) {
+  if (regions_.dirty.empty() && has_slack(slack_, paths_, state, dt, executor_)) {
     ++counts_.quiet;
     step_.allowed = 0;
     return;
   }
   keep_in_regions(state, dt, profile);
-  note_ends(state, dt, paths_.elapsed, slack_);
-  if (pairs_.active.empty()) note_calm_paths(paths_, calm_);
+  note_ends(state, dt, paths_.elapsed, executor_, slack_);
+  if (pairs_.active.empty()) note_calm_paths(paths_, executor_, calm_);
   step_.count_motion(pairs_.active, counts_);
 }
 
@@ -324,7 +324,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
 template <class Real>
 void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile& profile) {
   regions_.anchored.clear();
-  slack_.left = find_strays(state, dt, cloths_.reach, awake_, step_, paths_);
+  slack_.left = find_strays(state, dt, cloths_.reach, awake_, executor_, step_, paths_);
   bool collected = paths_.hold();
   for (int attempt = 0;; ++attempt) {
     const std::vector<Index>& strays = paths_.strays;

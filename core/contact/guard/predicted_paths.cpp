@@ -3,11 +3,12 @@
 #include "core/contact/guard/predicted_paths.h"
 
 #include <algorithm>
+#include <array>
 #include <cassert>
 #include <cmath>
 
 #include "core/contact/guard/constants.h"
-#include "core/contact/guard/stray_pass.h"
+#include "core/contact/parts.h"
 #include "core/instantiate.h"
 
 namespace weft {
@@ -42,7 +43,7 @@ Quad<Real> path_velocity(const PredictedPaths<Real>& paths, const GuardedStep<Re
 
 template <class Real>
 void begin_paths(const GuardedStep<Real>& step, const AwakeParticles& awake, Real dt, Real reach,
-                 Real finest, PredictedPaths<Real>& paths) {
+                 Real finest, Executor* executor, PredictedPaths<Real>& paths) {
   assert(dt > 0 && reach > 0 && finest > 0);
   // A motion common to all changes nothing between them.
   const Quad<Real> common =
@@ -57,8 +58,10 @@ void begin_paths(const GuardedStep<Real>& step, const AwakeParticles& awake, Rea
   const Real way = std::max(finest * Real(kHorizonPart), reach * Real(kHorizonReach));
   paths.horizon = std::clamp(way / std::max(speed, Real(1e-6)), shortest,
                              std::max(static_cast<Real>(kLongestHorizon), shortest));
-  for (std::size_t i = 0; i < step.from.size(); ++i)
-    paths.velocity[i] = path_velocity(paths, step, i, dt, reach);
+  run_ranges(executor, step.from.size(), kCopiesAtLeast, [&](std::size_t first, std::size_t end) {
+    for (std::size_t i = first; i < end; ++i)
+      paths.velocity[i] = path_velocity(paths, step, i, dt, reach);
+  });
   paths.from = step.from;
   paths.since.assign(step.from.size(), 0);
   paths.off = paths.off_now = paths.off_before = {};
@@ -77,22 +80,28 @@ void begin_paths_of_strays(const GuardedStep<Real>& step, Real dt, Real reach,
 }
 
 template <class Real>
-void predict(Real past, PredictedPaths<Real>& paths, PredictedMotion<Real>& motion) {
+void predict(Real past, Executor* executor, PredictedPaths<Real>& paths,
+             PredictedMotion<Real>& motion) {
   assert(motion.start.size() == paths.from.size() && motion.end.size() == paths.from.size());
   const Quad<Real> gone = paths.common_velocity * past;
   const Quad<Real> common = paths.common_velocity * paths.horizon;
-  Real fastest2 = 0;
-  for (std::size_t i = 0; i < paths.from.size(); ++i) {
-    motion.start[i] = paths.at(i, past) - gone;
-    motion.end[i] = paths.at(i, paths.horizon) - common;
-    fastest2 = std::max(fastest2, dot(paths.velocity[i], paths.velocity[i]));
-  }
-  paths.fastest = std::sqrt(fastest2);
+  std::array<Real, kMostParts> fastest2{};
+  const std::size_t count = paths.from.size();
+  run_parts(executor, count, parts_of(count, kCopiesAtLeast),
+            [&](std::size_t part, std::size_t first, std::size_t end) {
+              for (std::size_t i = first; i < end; ++i) {
+                motion.start[i] = paths.at(i, past) - gone;
+                motion.end[i] = paths.at(i, paths.horizon) - common;
+                fastest2[part] =
+                    std::max(fastest2[part], dot(paths.velocity[i], paths.velocity[i]));
+              }
+            });
+  paths.fastest = std::sqrt(*std::max_element(fastest2.begin(), fastest2.end()));
 }
 
 template <class Real>
 Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const AwakeParticles& awake,
-                 GuardedStep<Real>& step, PredictedPaths<Real>& paths) {
+                 Executor* executor, GuardedStep<Real>& step, PredictedPaths<Real>& paths) {
   assert(state.x.size() == step.from.size() && state.v.size() == step.from.size());
   const Real limit2 = reach * reach;
   const StrayPass<Real> pass{state.x.data()->data(),
@@ -111,11 +120,21 @@ Real find_strays(const ClothState<Real>& state, Real dt, Real reach, const Awake
   Quad<Real> sum;
   Real farthest2 = 0;
   bool left = false;
+  paths.parts.resize(kMostParts);
   const auto look = [&](std::size_t first, std::size_t end, bool awake_ones) {
-    const StrayLook<Real> found = look_for_strays(pass, first, end, paths.strays);
-    farthest2 = std::max(farthest2, found.farthest2);
-    left |= found.left;
-    if (awake_ones) sum += found.sum;
+    const std::size_t count = end - first, parts = parts_of(count, kCopiesAtLeast);
+    run_parts(executor, count, parts, [&](std::size_t n, std::size_t from, std::size_t to) {
+      StrayPart<Real>& part = paths.parts[n];
+      part.strays.clear();
+      part.found = look_for_strays(pass, first + from, first + to, part.strays);
+    });
+    for (std::size_t n = 0; n < parts; ++n) {
+      const StrayPart<Real>& part = paths.parts[n];
+      paths.strays.insert(paths.strays.end(), part.strays.begin(), part.strays.end());
+      farthest2 = std::max(farthest2, part.found.farthest2);
+      left |= part.found.left;
+      if (awake_ones) sum += part.found.sum;
+    }
   };
   std::size_t i = 0;
   for (const IndexRange& range : awake.ranges) {
