@@ -5,6 +5,7 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <cstdlib>
 #include <map>
 #include <memory>
 
@@ -72,6 +73,19 @@ std::uint32_t little_endian(std::string_view bytes, std::size_t at) {
   return value;
 }
 
+/// Whether the head of a PLY counts more of anything than the file has bytes: assimp makes room for
+/// all that it counts.
+bool counts_too_many(std::string_view head, std::size_t bytes) {
+  constexpr std::string_view kElement = "\nelement ";
+  for (std::size_t at = head.find(kElement); at != head.npos; at = head.find(kElement, at + 1)) {
+    const std::string_view line = head.substr(at + 1, head.find('\n', at + 1) - at - 1);
+    const std::size_t space = line.rfind(' ');
+    if (std::strtod(std::string(line.substr(space)).c_str(), nullptr) > static_cast<double>(bytes))
+      return true;
+  }
+  return false;
+}
+
 /// Checks the parts common to every file of the format; assimp reads past the end of files without
 /// them.
 void check_head(std::string_view bytes, const std::string& ending, const std::string& name) {
@@ -89,6 +103,8 @@ void check_head(std::string_view bytes, const std::string& ending, const std::st
   } else if (ending == "ply") {
     if (!bytes.starts_with("ply") || bytes.find("end_header") == bytes.npos)
       throw unreadable(name, "it has no PLY header");
+    if (counts_too_many(bytes.substr(0, bytes.find("end_header")), bytes.size()))
+      throw unreadable(name, "its header counts more than the file can hold");
   }
 }
 
@@ -238,6 +254,8 @@ MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFi
     throw DefinitionError("mesh", name, "at most " + std::to_string(limits.bytes) + " bytes",
                           "it has " + std::to_string(bytes.size()));
   if (bytes.empty()) throw unreadable(name, "it is empty");
+  // Many editors begin a text with this mark, which is no part of it.
+  if (bytes.starts_with("\xEF\xBB\xBF")) bytes.remove_prefix(3);
   const std::string ending = ending_of(name);
   check_head(bytes, ending, name);
   const std::string plain = ending == "obj" ? plain_obj(bytes, name) : std::string();

@@ -237,6 +237,22 @@ TEST_CASE("files that are no whole mesh are refused by name, cut at any length")
     CHECK(refusal(glb.substr(0, size), "cut.glb") != "accepted");
 }
 
+TEST_CASE("a text may begin with a byte order mark") {
+  const std::string mark = "\xEF\xBB\xBF";
+  const MeshFile plain = read_mesh(as_obj(brick()), "brick.obj", {});
+  const MeshFile marked = read_mesh(mark + as_obj(brick()), "brick.obj", {});
+  CHECK(marked.mesh.positions == plain.mesh.positions);
+  CHECK(marked.mesh.triangles == plain.mesh.triangles);
+}
+
+TEST_CASE("a PLY whose head counts more than the file can hold is refused for that") {
+  const std::string ply =
+      "ply\nformat ascii 1.0\nelement vertex 99999999999\nproperty float x\nproperty float y\n"
+      "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+      "0 0 0\n";
+  CHECK_THROWS_WITH(read_mesh(ply, "big.ply", {}), Catch::Contains("counts more"));
+}
+
 TEST_CASE("a file larger than its limits is refused with the limit") {
   const std::string obj = as_obj(brick());
   CHECK(refusal(obj, "brick.obj", {10, 100, 100}) == "at most 10 bytes");
