@@ -7,6 +7,9 @@ The old version is a commit: its core is built in a work tree of its own under b
 the cases of this one are compiled against it. It also records the states. Both then run in turn,
 on one thread, without a limit for a tick. Of each tick the median of all runs counts. The new
 version is build/weft_contact_bench.
+
+With --path, the new version alone: what two threads would take of one's time, by the critical path
+(the busiest thread's time between barriers; see dealt_chunks.h), and how much more work there is.
 """
 
 import argparse
@@ -93,10 +96,24 @@ def over(case, means):
             f"before {100 * (one[0] / alone[0] - 1):.0f} %")
 
 
+def paths(program, case, states, runs):
+    """A row: the critical path of two threads and the work of both, over the time of one."""
+    ones, twos = [], []
+    for _ in range(runs):
+        for verb, found in (("time", ones), ("path", twos)):
+            text = run(program, verb, case, states, capture_output=True).stdout
+            found.append(json.loads(text))
+    def sums(key, of):
+        return sum(median(same) for same in zip(*(one[key] for one in of), strict=True))
+    one, work, path = sums("milliseconds", ones), sums("milliseconds", twos), sums("path", twos)
+    return f"| {case} | {path / one:.2f} | {work / one:.2f} |"
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--old", required=True, help="a commit, or a program made for one")
+    parser.add_argument("--old", help="a commit, or a program made for one")
+    parser.add_argument("--path", action="store_true", help="what two threads would take")
     parser.add_argument("--new", default=str(ROOT / "build/weft_contact_bench"), help="a program")
     parser.add_argument("--cases", help="names, separated by commas; default: all")
     parser.add_argument("--runs", type=int, default=5, help="of each version (5)")
@@ -104,6 +121,16 @@ def main():
     options = parser.parse_args()
     scratch = Path(options.scratch)
     scratch.mkdir(parents=True, exist_ok=True)
+    if not options.old and not options.path:
+        parser.error("--old or --path is needed")
+    if options.path:
+        print("critical path of two threads, and their work, over the time of one\n")
+        print("| case | path | work |\n|---|---|---|")
+        for case in (options.cases or "pile,form,sphere").split(","):
+            states = scratch / f"{case}.states"
+            run(options.new, "record", case, states)
+            print(paths(options.new, case, states, options.runs), flush=True)
+        return
     old = options.old if Path(options.old).is_file() else program_of(options.old, scratch)
     programs = old, options.new
     known = [row.split("\t")[0] for row in

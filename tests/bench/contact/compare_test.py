@@ -50,6 +50,12 @@ class Compare(unittest.TestCase):
         runs = [{"milliseconds": ticks} for ticks in ([1, 9, 3], [2, 4, 30], [50, 5, 4])]
         self.assertEqual(compare.figures(runs), {"mean": 11 / 3, "p50": 4, "p99": 4, "worst": 5})
 
+    def test_a_critical_path_is_part_of_the_time_and_at_least_half_of_it(self):
+        run = json.loads(bench("path", "hands", self.states))
+        self.assertEqual(len(run["path"]), 30)
+        for whole, path in zip(run["milliseconds"], run["path"], strict=True):
+            self.assertTrue(whole / 2 - 1e-3 <= path <= whole)
+
     def test_what_is_no_recording_and_no_case_is_refused(self):
         for words in (("time", "hands", __file__), ("time", "nothing", self.states)):
             done = subprocess.run([PROGRAM, *words], capture_output=True, text=True, timeout=20)

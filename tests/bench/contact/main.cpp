@@ -11,6 +11,7 @@
 
 #include "core/diagnostics/crossings.h"
 #include "tests/bench/contact/cases.h"
+#include "tests/bench/contact/dealt_chunks.h"
 
 namespace weft::bench {
 namespace {
@@ -92,7 +93,9 @@ Recording read(const ContactCase& c, const std::string& path) {
 /// The world of a case, tick by tick, with its hands.
 class Run {
  public:
-  Run(const ContactCase& c, int tick) : case_(c), world_(c.def), tick_(tick) {}
+  /// @param threads  run the chunks of the steps; may be null
+  Run(const ContactCase& c, int tick, Executor* threads = nullptr)
+      : case_(c), world_(c.def, {.executor = threads}), tick_(tick) {}
 
   void put_into(const State& state) {
     world_.state().x = state.x;
@@ -113,7 +116,7 @@ class Run {
     }
   }
 
-  /// Moves the hands and steps. @returns CPU milliseconds of the step
+  /// Moves the hands and steps. @return CPU milliseconds of the step
   double step(const Recording& recording) {
     for (std::size_t h = 0; tick_ >= case_.before && h < case_.hands.size(); ++h) {
       if (grabs_.size() == h) grabs_.push_back(world_.grab(grab_of(recording, h)));
@@ -220,18 +223,51 @@ void time_case(const ContactCase& c, const Recording& recording, bool count) {
     std::cout << "null}" << std::endl;
 }
 
+/// Prints of each tick the wall milliseconds and those of the critical path of two threads.
+void time_path(const ContactCase& c, const Recording& recording) {
+  DealtChunks dealt;
+  std::vector<double> whole, path;
+  for (int stretch = 0; stretch < stretches(c); ++stretch) {
+    Run run(c, first_tick(c, stretch), &dealt);
+    if (run.tick() > 0) run.put_into(recording.states[static_cast<std::size_t>(stretch)]);
+    while (run.tick() < first_timed(c, stretch)) run.step(recording);
+    const int end = c.stretch > 0 ? std::min(first_timed(c, stretch + 1), c.before + c.ticks)
+                                  : c.before + c.ticks;
+    while (run.tick() < end) {
+      dealt.take_saved();
+      const double start = wall_milliseconds();
+      run.step(recording);
+      whole.push_back(wall_milliseconds() - start);
+      path.push_back(whole.back() - dealt.take_saved());
+    }
+  }
+  const auto print = [](const char* name, const std::vector<double>& numbers) {
+    std::cout << '"' << name << "\": [";
+    for (std::size_t k = 0; k < numbers.size(); ++k) std::cout << (k > 0 ? ", " : "") << numbers[k];
+    std::cout << ']';
+  };
+  std::cout << "{\"case\": \"" << c.name << "\", ";
+  print("milliseconds", whole);
+  std::cout << ", ";
+  print("path", path);
+  std::cout << "}" << std::endl;
+}
+
 int run(const std::vector<std::string>& words) {
   const std::string verb = words.empty() ? "" : words[0];
   if (verb == "list") {
     for (const ContactCase& c : contact_cases()) std::cout << c.name << '\t' << c.how << '\n';
     return 0;
   }
-  if (words.size() < 3 || (verb != "record" && verb != "time" && verb != "count"))
-    throw std::runtime_error("usage: list | record CASE FILE | time CASE FILE | count CASE FILE");
+  const std::vector<std::string> verbs = {"record", "time", "count", "path"};
+  if (words.size() < 3 || std::find(verbs.begin(), verbs.end(), verb) == verbs.end())
+    throw std::runtime_error("usage: list | record CASE FILE | time|count|path CASE FILE");
   for (const ContactCase& c : contact_cases()) {
     if (c.name != words[1]) continue;
     if (verb == "record")
       write(record(c), words[2]);
+    else if (verb == "path")
+      time_path(c, read(c, words[2]));
     else
       time_case(c, read(c, words[2]), verb == "count");
     return 0;
