@@ -62,9 +62,11 @@ struct Collision {
     }
   }
   /// Call after the drift: corrects penetrations.
-  void after_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
+  /// @param keeps_velocity  see ClothGuard::finish
+  void after_drift(ClothState<Real>& state, Real dt, Profile& profile,
+                   bool keeps_velocity = true) const {
     const StageTimer timer(profile, Stage::contact, 0);
-    if (guard) guard->finish(state);
+    if (guard) guard->finish(state, keeps_velocity);
     if (seed) seed->collide(state, dt, profile);
   }
   /// Call at the end of a tick, after the closing kick.

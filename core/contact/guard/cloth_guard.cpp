@@ -217,9 +217,10 @@ void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
 }
 
 template <class Real>
-void ClothGuard<Real>::finish(ClothState<Real>& state) {
+void ClothGuard<Real>::finish(ClothState<Real>& state, bool keeps_velocity) {
   assert(phase_ == GuardPhase::certified);
   phase_ = GuardPhase::between_steps;
+  if (!keeps_velocity) forget_stopped(stopped_);
   give_velocities_back(stopped_, state.v);
   take_back_push(push_, state.v);
   meet_at_planes(state.inverse_mass, stopped_, state.v);

@@ -91,7 +91,8 @@ class ClothGuard {
   void stand_still();
 
   /// After the drift: gives what was stopped its velocity back, and takes the push out again.
-  void finish(ClothState<Real>& state);
+  /// @param keeps_velocity  false: velocities are displacements, and what was stopped loses them
+  void finish(ClothState<Real>& state, bool keeps_velocity = true);
 
   /// Paths along which nothing can meet, for steps without the calls above; null if there are none.
   const CalmPaths<Real>* calm_paths() const {

@@ -69,8 +69,8 @@ TEST_CASE("a cloth meets objects in the same rows with one and two threads") {
 
 TEST_CASE("it does where an object moves") {
   WorldDef def = falling(0.22);
-  def.colliders[1].motion.keyframes = {{0, {}}, {1, {Vec3d(0, 0.2, 0)}}};
-  def.colliders[2].motion.keyframes = {{0, {}}, {1, {Vec3d(0.1, 0.1, 0)}}};
+  def.colliders[1].motion.keyframes = {{0, Vec3d::Zero()}, {1, Vec3d(0, 0.2, 0)}};
+  def.colliders[2].motion.keyframes = {{0, Vec3d::Zero()}, {1, Vec3d(0.1, 0.1, 0)}};
   CHECK(check_fall(def, 12) > 1000);
 }
 
