@@ -75,10 +75,11 @@ void meet_at_planes(const std::vector<Real>& inverse_mass, StoppedParticles<Real
 
 template <class Real>
 void forget_stopped(StoppedParticles<Real>& stopped) {
+  for (const StoppedParticle<Real>& one : stopped.list)
+    stopped.place_of[at_index(one.particle)] = kNone;
   stopped.list.clear();
   stopped.pairs.clear();
   stopped.any = false;
-  std::fill(stopped.place_of.begin(), stopped.place_of.end(), kNone);
 }
 
 template <class Real>
