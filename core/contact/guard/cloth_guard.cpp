@@ -60,6 +60,7 @@ void forget(RowMaking<Real>& making) {
 
 template <class Real>
 void forget(Regions<Real>& regions) {
+  regions.sizes.assign(regions.sizes.size(), Quad<Real>{{0, 0, -1, 0}});
   regions.dirty.clear();
   regions.columns.clear();
   for (AnchorPart<Real>& part : regions.parts) part.columns.clear(), part.next.clear();

@@ -30,7 +30,7 @@ template <class Real>
 void measure_lengths(const GuardedStep<Real>& step, Regions<Real>& regions) {
   if (std::exchange(regions.measured, step.number) == step.number) return;
   for (std::size_t i = 0; i < step.displacement.size(); ++i)
-    regions.sizes[i].lanes[kLength] = length(step.displacement[i]);
+    regions.sizes[i].lanes[kLengthLane] = length(step.displacement[i]);
 }
 
 /// Bounds the regions of a pair's particles by their side's share of its gap.
@@ -45,7 +45,7 @@ void share_gap(const GuardedPair<Real>& pair, Regions<Real>& regions, Takes&& ta
     const auto i = at_index(pair.particle[k]);
     if (!takes(i)) continue;
     const Real own = gap * (k < first_side(pair.kind) ? share : 1 - share);
-    regions.sizes[i].lanes[kRadius] = std::min(regions.radius(i), own);
+    regions.sizes[i].lanes[kRadiusLane] = std::min(regions.radius(i), own);
   }
 }
 
@@ -77,7 +77,7 @@ template <class Real>
 template <class Real>
 bool asks_for(Index particle, const GuardedPair<Real>& pair, const QuadArray<Real>& sizes) {
   for (const Index k : pair.particle) {
-    if (sizes[at_index(k)][kAhead] >= 0) return k == particle;
+    if (sizes[at_index(k)][kAheadLane] >= 0) return k == particle;
   }
   return false;
 }
@@ -88,7 +88,7 @@ bool asks_for(Index particle, const GuardedPair<Real>& pair, const QuadArray<Rea
 template <class Real>
 void list_claims(Index particle, const GuardedPairs<Real>& pairs, const Regions<Real>& regions,
                  AnchorPart<Real>& part) {
-  const Real ahead = regions.sizes[at_index(particle)][kAhead];
+  const Real ahead = regions.sizes[at_index(particle)][kAheadLane];
   assert(ahead >= 0 && "is being anchored");
   for_pairs_of(pairs, at_index(particle), [&](const GuardedPair<Real>& pair) {
     const auto [first, second] = sides_of(pair, regions.sizes);
@@ -97,20 +97,20 @@ void list_claims(Index particle, const GuardedPairs<Real>& pairs, const Regions<
         particle == p[0] || (pair.kind == PairKind::edge_edge && particle == p[1]);
     const Quad<Real>&own = on_first ? first : second, &across = on_first ? second : first;
     // The bound of a gap falls by no more than the largest displacements of both sides' anchors.
-    const Real moved = first[kMoved] + second[kMoved], bound = pair.bound - moved;
-    const Real most = std::max(first[kRadius], second[kRadius]);
+    const Real moved = first[kMovedLane] + second[kMovedLane], bound = pair.bound - moved;
+    const Real most = std::max(first[kRadiusLane], second[kRadiusLane]);
     const auto leaves = [&](const Quad<Real>& side, const Quad<Real>& other) {
-      return side[kAhead] < 0 || bound > most + other[kRadius] + side[kAhead];
+      return side[kAheadLane] < 0 || bound > most + other[kRadiusLane] + side[kAheadLane];
     };
     AnchorClaim<Real>& claim = part.claims.emplace_back();
     claim.pair = pairs.number_of(pair);
-    claim.ample = bound > most + across[kRadius] + ahead;
+    claim.ample = bound > most + across[kRadiusLane] + ahead;
     claim.measured = !(leaves(first, second) && leaves(second, first));
     claim.bound = bound;
-    claim.own = own[kRadius];
-    claim.other = across[kRadius];
-    claim.own_length = own[kLength];
-    claim.other_length = across[kLength];
+    claim.own = own[kRadiusLane];
+    claim.other = across[kRadiusLane];
+    claim.own_length = own[kLengthLane];
+    claim.other_length = across[kLengthLane];
     if (!asks_for(particle, pair, regions.sizes)) return;
     if (claim.measured)
       part.columns[pair.kind].add(claim.pair, 0, p);
@@ -156,7 +156,7 @@ Real share_claims(Index particle, std::span<const AnchorClaim<Real>> claims, boo
     const bool greedy = first && left < share && left < 2 * length;
     if (!too_much && !greedy) continue;
     for (const Index j : pairs[claim.pair].particle) {
-      const bool keeps_anchor = regions.sizes[at_index(j)][kAhead] < 0;
+      const bool keeps_anchor = regions.sizes[at_index(j)][kAheadLane] < 0;
       if (keeps_anchor && (greedy || regions.radius(at_index(j)) > 0)) next.push_back(j);
     }
     next.push_back(particle);
@@ -170,13 +170,13 @@ void move_anchors(const GuardedStep<Real>& step, Regions<Real>& regions, GuardCo
   for (const Index k : regions.in_wave) {
     const auto i = at_index(k);
     Quad<Real>& sizes = regions.sizes[i];
-    sizes.lanes[kRadius] = 0;
-    sizes.lanes[kAhead] = sizes[kLength] * Real(2 * kStepsOfRoom) + regions.smallest_gap;
+    sizes.lanes[kRadiusLane] = 0;
+    sizes.lanes[kAheadLane] = sizes[kLengthLane] * Real(2 * kStepsOfRoom) + regions.smallest_gap;
     if (regions.anchored_at[i] == step.number) continue;
     regions.anchored_at[i] = step.number;
     regions.anchored.push_back(k);
     ++counts.anchored;
-    sizes.lanes[kMoved] = length(step.from[i] - regions.anchor[i]);
+    sizes.lanes[kMovedLane] = length(step.from[i] - regions.anchor[i]);
     regions.anchor[i] = step.from[i];
   }
 }
@@ -220,9 +220,9 @@ void share_part(std::span<const Index> particles, bool first, const GuardedPairs
 template <class Real>
 void end_anchoring(Index particle, Real radius, Regions<Real>& regions) {
   Quad<Real>& sizes = regions.sizes[at_index(particle)];
-  sizes.lanes[kRadius] = radius;
-  sizes.lanes[kAhead] = -1;
-  sizes.lanes[kMoved] = 0;
+  sizes.lanes[kRadiusLane] = radius;
+  sizes.lanes[kAheadLane] = -1;
+  sizes.lanes[kMovedLane] = 0;
 }
 
 /// Anchors the particles of a wave, and puts those of the next one in their place.
@@ -284,7 +284,7 @@ void share_all_gaps(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& st
                     Regions<Real>& regions) {
   measure_lengths(step, regions);
   for (const Index k : pairs.active)
-    regions.sizes[at_index(k)].lanes[kRadius] = std::numeric_limits<Real>::infinity();
+    regions.sizes[at_index(k)].lanes[kRadiusLane] = std::numeric_limits<Real>::infinity();
   for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
     share_gap(pair, regions, [](std::size_t) { return true; });
   });
@@ -301,7 +301,7 @@ void admit_pairs(std::size_t first, const GuardedStep<Real>& step, Executor* exe
       const auto i = at_index(k);
       if (!is_new(i)) continue;
       regions.anchor[i] = step.from[i];
-      regions.sizes[i].lanes[kRadius] = std::numeric_limits<Real>::infinity();
+      regions.sizes[i].lanes[kRadiusLane] = std::numeric_limits<Real>::infinity();
     }
   });
   for (std::size_t k = first; k < pairs.all.size(); ++k)

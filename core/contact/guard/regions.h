@@ -21,7 +21,7 @@ namespace weft {
 /// Radius of its region, 0 while it is being anchored; length of its displacement in the coming
 /// step; room that bounds should leave it if it is being anchored, otherwise -1; displacement of
 /// its anchor in this wave.
-inline constexpr int kRadius = 0, kLength = 1, kAhead = 2, kMoved = 3;
+inline constexpr int kRadiusLane = 0, kLengthLane = 1, kAheadLane = 2, kMovedLane = 3;
 
 /// A pair of a particle that is being anchored.
 template <class Real>
@@ -59,7 +59,7 @@ template <class Real>
 struct Regions {
   Real smallest_gap = 0;                   ///< left between features after every step [m]
   QuadArray<Real> anchor;                  ///< centres [m]
-  QuadArray<Real> sizes;                   ///< of each particle, see kRadius
+  QuadArray<Real> sizes;                   ///< of each particle, see kRadiusLane
   std::uint64_t measured = 0;              ///< step in which lengths were measured last
   std::vector<std::uint64_t> anchored_at;  ///< step in which each was anchored last
   std::vector<Index> anchored;             ///< particles anchored in this step
@@ -71,8 +71,8 @@ struct Regions {
   std::vector<AnchorPart<Real>> parts;     ///< of a wave
   ColumnsByKind<Real> columns;             ///< pairs that are measured together
 
-  Real radius(std::size_t particle) const { return sizes[particle][kRadius]; }
-  Real length(std::size_t particle) const { return sizes[particle][kLength]; }
+  Real radius(std::size_t particle) const { return sizes[particle][kRadiusLane]; }
+  Real length(std::size_t particle) const { return sizes[particle][kLengthLane]; }
 };
 
 /// Anchors all particles in pairs where they are.

@@ -117,7 +117,7 @@ void check_regions(unsigned seed) {
       lowered +=
           pair.bound < before[k].bound && static_cast<double>(pair.bound) < gap - 1e-5 ? 1 : 0;
     }
-    for (std::size_t i = 0; i < kParticles; ++i) CHECK(regions.sizes[i][kAhead] == -1);
+    for (std::size_t i = 0; i < kParticles; ++i) CHECK(regions.sizes[i][kAheadLane] == -1);
     anchored += static_cast<int>(regions.anchored.size());
     soup.move();
   }
