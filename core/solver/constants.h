@@ -20,9 +20,9 @@ inline constexpr double kFarthestFromOrigin = 1000;
 /// cloth is noticed later. Smaller: cloth in a storm is stopped.
 inline constexpr double kPlausibleSpeed = 200;
 
-/// Particles that one thread looks at for a blow-up, at least. Fewer: to deal them out costs more
-/// than the look.
-inline constexpr std::size_t kLookedAtLeast = 4096;
+/// Particles of which one thread looks for blow-ups, or which it drifts, at least. Fewer: to deal
+/// them out costs more than the work.
+inline constexpr std::size_t kPassedAtLeast = 2048;
 
 // Steps while contact cannot act.
 

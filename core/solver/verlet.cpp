@@ -7,6 +7,8 @@
 #include <cassert>
 
 #include "core/forces/rest_curve.h"
+#include "core/solver/awake_cloths.h"
+#include "core/solver/constants.h"
 #include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
 #include "core/solver/verlet_tick.h"
@@ -215,6 +217,20 @@ bool takes_over(const Collision<Real>& collision) {
   return collision.seed || collision.guard;
 }
 
+/// Drifts cloths in the model's arrays.
+/// @param rows_too  those as well that grids could drift along with their own arrays
+template <class Real>
+void drift_in_arrays(Tick<Real>& tick, bool rows_too) {
+  if (tick.work.all_grids && !rows_too) return;
+  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
+  any_of_awake(tick.model, tick.state, kPassedAtLeast, tick.work.executor,
+               [&](std::size_t p, std::size_t first, std::size_t last) {
+                 if (rows_too || !tick.by_rows(p))
+                   run_drift(3 * (last - first), v[first].data(), tick.dt, x[first].data());
+                 return false;
+               });
+}
+
 /// Drifts all particles. @returns work of the external forces [J]
 template <class Real>
 double drift(Tick<Real>& tick) {
@@ -224,16 +240,15 @@ double drift(Tick<Real>& tick) {
       tick.solver.damping_sweeps == 1 && (tick.has_external_forces || !takes_over(tick.collision));
   double work = 0;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
-    const IndexRange& range = tick.part(p).particles;
     if (tick.sleeps(p)) continue;
     if (tick.by_rows(p) && along) {
       work += tick.grid(p).drift(tick.dt, tick.has_external_forces, v, x, tick.work.executor) *
               static_cast<double>(tick.dt);
     } else {
-      work += external_work(tick, range);
-      run_drift(3 * size_of(range), numbers(range, v), tick.dt, numbers(range, x));
+      work += external_work(tick, tick.part(p).particles);
     }
   }
+  drift_in_arrays(tick, !along);
   return work;
 }
 
