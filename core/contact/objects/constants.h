@@ -37,8 +37,9 @@ inline constexpr std::size_t kTurns = 8;
 /// Parts of the collection. More: more threads, and more lists to join.
 inline constexpr std::size_t kContactParts = 8;
 
-/// Particles, features or pairs whose rows one thread makes, and particles whose reach it finds, at
-/// least. Fewer: to deal them out costs more than to make them.
+/// Particles, features or pairs whose rows one thread makes, or particles whose clearance it takes
+/// over, and particles whose reach it finds, at least. Fewer: to deal them out costs more than the
+/// work.
 inline constexpr std::size_t kMadeAtLeast = 512, kAllowedAtLeast = 1024;
 
 /// How far around a patch its part of a mesh reaches, in sizes of the mesh's triangles [1]. Larger:

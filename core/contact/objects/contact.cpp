@@ -144,7 +144,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   add_particle_rows(source, executor_, scratch_, rows_, profile);
   add_features_on_rounds(source, executor_, scratch_, rows_, profile);
   add_features_on_meshes(source, executor_, scratch_, rows_, profile);
-  finish_rows(cloths_, n, rows_);
+  finish_rows(cloths_, n, executor_, rows_);
   reach_.made = true;
 }
 

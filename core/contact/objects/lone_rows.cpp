@@ -39,11 +39,12 @@ LoneBlock<Real> empty_block(std::size_t first) {
 template <class Real, class Work>
 LoneResponse<Real> in_parts(std::span<LoneBlock<Real>> blocks, Executor* executor, Work&& work) {
   // The last block may have particles of the one before, which are in the same part.
-  constexpr std::size_t kParts = 4, kFewBlocks = 256;
-  static_assert(kFewBlocks >= 2 * kParts);
-  if (!executor || blocks.size() < kFewBlocks) return work(blocks);
-  std::array<LoneResponse<Real>, kParts> of_part;
-  run_parts(executor, blocks.size(), kParts,
+  constexpr std::size_t kMost = 4, kFewBlocks = 64;
+  static_assert(kFewBlocks >= 2);
+  const std::size_t parts = std::min(parts_of(blocks.size(), kFewBlocks), kMost);
+  if (!executor || parts == 1) return work(blocks);
+  std::array<LoneResponse<Real>, kMost> of_part;
+  run_parts(executor, blocks.size(), parts,
             [&](std::size_t part, std::size_t first, std::size_t last) {
               of_part[part] = work(blocks.subspan(first, last - first));
             });

@@ -186,6 +186,16 @@ void join_found(std::size_t mesh, ObjectPairs<Real>& pairs, Profile& profile) {
     profile[Stage::narrow_phase].work += found.tests;
 }
 
+/// Calls work(particle) for each near particle, which does not depend on others.
+template <class Real, class Work>
+void for_near_particles(const NearFeatures<Real>& near, Executor* executor, Work&& work) {
+  const std::size_t count = near.particles.size();
+  run_parts(executor, count, parts_of(count, kMadeAtLeast),
+            [&](std::size_t, std::size_t first, std::size_t last) {
+              for (std::size_t n = first; n < last; ++n) work(at_index(near.particles[n]));
+            });
+}
+
 /// Lets particles go farther than was asked for, as far as is known now: until one of their
 /// features may touch what it has no pair with.
 template <class Real>
@@ -240,11 +250,10 @@ void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& 
   const Real thickness = cloths.thickness;
   std::vector<Real>& fresh = pairs.fresh;
   fresh.resize(x.size());
-  for (const Index i : near.particles) {
-    const auto p = at_index(i);
+  for_near_particles(near, executor, [&](std::size_t p) {
     fresh[p] = analytic_clearance(shapes, x[p], thickness + clearance.skin[p]);
     clearance.has_pairs[p] = 0;
-  }
+  });
   constexpr Real kUnlimited = std::numeric_limits<Real>::infinity();
   pairs.free.particle.assign(x.size(), kUnlimited);
   pairs.free.edge.assign(cloths.patches.edges.size(), kUnlimited);
@@ -268,11 +277,10 @@ void collect_pairs(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& 
     join_found(m, pairs, profile);
   }
   // The pairs have measured the clearance, up to the reach; both this and the old one are bounds.
-  for (const Index i : near.particles) {
-    const auto p = at_index(i);
+  for_near_particles(near, executor, [&](std::size_t p) {
     Real& distance = clearance.distance[p];
     distance = fresh[p] < thickness + clearance.skin[p] ? fresh[p] : std::max(distance, fresh[p]);
-  }
+  });
   extend_skins(cloths, near, pairs.free, clearance);
 }
 

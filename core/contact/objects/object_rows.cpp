@@ -164,6 +164,18 @@ void add_round_row(const ObjectRowSource<Real>& source, Index i, const RoundObje
           rod.collider, true, rows);
 }
 
+template <class Real>
+RowRoom<Real> room_of(const ContactRow<Real>& row) {
+  const auto square = [](Real distance) { return distance > 0 ? distance * distance : Real(-1); };
+  RowRoom<Real> room;
+  for (std::size_t k = 0; k < 3; ++k) room.particle[k] = row.particle[k < row.count ? k : 0];
+  room.touch2 = row.responds
+                    ? square((row.distance - row.thickness - Real(kTouchSlack)) * Real(kTouchPart))
+                    : std::numeric_limits<Real>::infinity();
+  room.cross2 = square(row.least_height - row.keep);
+  return room;
+}
+
 }  // namespace
 
 template <class Real>
@@ -290,19 +302,15 @@ Real kept_height(const ObjectRowSource<Real>& source, Index particle, Real dista
 }
 
 template <class Real>
-void finish_rows(const ContactCloths<Real>& cloths, std::size_t particles, ObjectRows<Real>& rows) {
+void finish_rows(const ContactCloths<Real>& cloths, std::size_t particles, Executor* executor,
+                 ObjectRows<Real>& rows) {
   std::erase_if(rows.exits, [](const BadStart<Real>& exit) { return exit.particles == 0; });
-  const auto square = [](Real distance) { return distance > 0 ? distance * distance : Real(-1); };
-  rows.rooms.clear();
-  for (const ContactRow<Real>& row : rows.all) {
-    RowRoom<Real> room;
-    for (std::size_t k = 0; k < 3; ++k) room.particle[k] = row.particle[k < row.count ? k : 0];
-    room.touch2 =
-        row.responds ? square((row.distance - row.thickness - Real(kTouchSlack)) * Real(kTouchPart))
-                     : std::numeric_limits<Real>::infinity();
-    room.cross2 = square(row.least_height - row.keep);
-    rows.rooms.push_back(room);
-  }
+  const std::size_t count = rows.all.size();
+  rows.rooms.resize(count);
+  run_parts(executor, count, parts_of(count, kMadeAtLeast),
+            [&](std::size_t, std::size_t first, std::size_t last) {
+              for (std::size_t r = first; r < last; ++r) rows.rooms[r] = room_of(rows.all[r]);
+            });
   rows.lone.find(rows.all, rows.rooms, cloths.defs, particles);
   rows.joint.clear();
   for (std::size_t r = 0; r < rows.all.size(); ++r) {

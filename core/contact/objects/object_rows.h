@@ -149,6 +149,7 @@ Real kept_height(const ObjectRowSource<Real>& source, Index particle, Real dista
 
 /// Determines how far particles may go before each row matters, and sorts lone rows out.
 template <class Real>
-void finish_rows(const ContactCloths<Real>& cloths, std::size_t particles, ObjectRows<Real>& rows);
+void finish_rows(const ContactCloths<Real>& cloths, std::size_t particles, Executor* executor,
+                 ObjectRows<Real>& rows);
 
 }  // namespace weft
