@@ -186,14 +186,15 @@ bool allow_rows(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sha
   assert(clearance.collected && reach.size() == state.x.size());
   const bool edges_matter = !(shapes.rounds.empty() && shapes.meshes.empty());
   const Real thickness = cloths.thickness;
-  std::array<bool, kMostParts> short_of{};
+  std::array<bool, kMostParts> lacks{};
   const auto allow = [&](std::size_t part, std::size_t first, std::size_t last) {
+    bool enough = true;
     for (std::size_t i = first; i < last; ++i) {
       moved[i] = (state.x[i] - clearance.x[i]).norm();
       const Real left = clearance.skin[i] - moved[i] - motion.since_pairs;
       const Real step = state.v[i].norm() * dt;
       // An object and what it carries along both go its way.
-      short_of[part] |= !(left >= step * Real(1.5) + motion.coming * Real(3));
+      enough &= left >= step * Real(1.5) + motion.coming * Real(3);
       Real wanted = (step + motion.coming) * Real(kRowSubsteps);
       if (edges_matter && !motion.any_tracked)
         wanted = std::min(wanted,
@@ -206,10 +207,11 @@ bool allow_rows(const ContactCloths<Real>& cloths, const ObjectShapes<Real>& sha
                         Real(kFreePart));
       reach[i] = near.paired[i] ? std::min(left, wanted) : left;
     }
+    lacks[part] = !enough;
   };
   const std::size_t count = state.x.size();
   run_parts(executor, count, parts_of(count, kAllowedAtLeast), allow);
-  return std::find(short_of.begin(), short_of.end(), true) == short_of.end();
+  return std::find(lacks.begin(), lacks.end(), true) == lacks.end();
 }
 
 template <class Real>
