@@ -4,7 +4,9 @@
 
 #include <cassert>
 
+#include "core/solver/awake_cloths.h"
 #include "core/solver/constants.h"
+#include "core/solver/vector_passes.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -118,6 +120,18 @@ void load_grids(Tick<Real>& tick) {
   }
 }
 
+template <class Real>
+void drift_in_arrays(Tick<Real>& tick, bool rows_too) {
+  if (tick.work.all_grids && !rows_too) return;
+  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
+  any_of_awake(tick.model, tick.state, kPassedAtLeast, tick.work.executor,
+               [&](std::size_t p, std::size_t first, std::size_t last) {
+                 if (rows_too || !tick.by_rows(p))
+                   run_drift(3 * (last - first), v[first].data(), tick.dt, x[first].data());
+                 return false;
+               });
+}
+
 /// All substeps of a grid that nothing else touches: the particles stay in its own arrays.
 /// @returns work of the air [J]
 template <class Real>
@@ -205,6 +219,7 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
 #define WEFT_INSTANTIATE(Real)                                                      \
   template double advance_grid(Tick<Real>&, std::size_t, const Kick<Real>&, Real);  \
   template void load_grids(Tick<Real>&);                                            \
+  template void drift_in_arrays(Tick<Real>&, bool);                                 \
   template double advance_alone(Tick<Real>&, std::size_t, const Kicks<Real>&, int); \
   template double advance_calm(Tick<Real>&, const Kicks<Real>&, int, int&, NextCalm&);
 WEFT_INSTANTIATE(float)

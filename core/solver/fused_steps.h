@@ -16,6 +16,11 @@ double advance_grid(Tick<Real>& tick, std::size_t part, const Kick<Real>& kick, 
 template <class Real>
 void load_grids(Tick<Real>& tick);
 
+/// Drifts cloths in the model's arrays.
+/// @param rows_too  those as well that grids could drift along with their own arrays
+template <class Real>
+void drift_in_arrays(Tick<Real>& tick, bool rows_too);
+
 /// All substeps of a grid that nothing else touches: the particles stay in its own arrays.
 /// @returns work of the air [J]
 template <class Real>

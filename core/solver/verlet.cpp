@@ -7,8 +7,6 @@
 #include <cassert>
 
 #include "core/forces/rest_curve.h"
-#include "core/solver/awake_cloths.h"
-#include "core/solver/constants.h"
 #include "core/solver/fused_steps.h"
 #include "core/solver/vector_passes.h"
 #include "core/solver/verlet_tick.h"
@@ -215,20 +213,6 @@ double external_work(const Tick<Real>& tick, const IndexRange& range) {
 template <class Real>
 bool takes_over(const Collision<Real>& collision) {
   return collision.seed || collision.guard;
-}
-
-/// Drifts cloths in the model's arrays.
-/// @param rows_too  those as well that grids could drift along with their own arrays
-template <class Real>
-void drift_in_arrays(Tick<Real>& tick, bool rows_too) {
-  if (tick.work.all_grids && !rows_too) return;
-  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
-  any_of_awake(tick.model, tick.state, kPassedAtLeast, tick.work.executor,
-               [&](std::size_t p, std::size_t first, std::size_t last) {
-                 if (rows_too || !tick.by_rows(p))
-                   run_drift(3 * (last - first), v[first].data(), tick.dt, x[first].data());
-                 return false;
-               });
 }
 
 /// Drifts all particles. @returns work of the external forces [J]
