@@ -98,9 +98,11 @@ inline constexpr double kDiagonal = 1.7321;
 /// more motion is lost. Smaller: rounding could carry one over its plane.
 inline constexpr double kStopShort = 1e-4;
 
-/// Rounds in which pairs that were stopped take their approach from each other. More: what they
-/// leave of it, for the rows of the next step, is less. Fewer: less work where much is stopped.
-inline constexpr int kMostMeetings = 8;
+/// Rounds in which pairs that were stopped take their approach from each other, at most, and the
+/// fraction of the first round's largest impulse at which they end [1]. More: what is jammed leaves
+/// less approach to the next step, which stops it again. Fewer: less work where much is stopped.
+inline constexpr int kMostMeetings = 40;
+inline constexpr double kMeetingResidual = 1e-3;
 
 // Tangles.
 

@@ -64,11 +64,13 @@ void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v) {
 template <class Real>
 void meet_at_planes(const std::vector<Real>& inverse_mass, StoppedParticles<Real>& stopped,
                     Vec3Array<Real>& v) {
+  Real enough = 0;
   for (int round = 0; round < kMostMeetings; ++round) {
     Real largest = 0;
     for (const StoppedPair<Real>& pair : stopped.pairs)
       largest = std::max(largest, meet(pair, inverse_mass, v));
-    if (!(largest > 0)) break;
+    if (!(largest > enough)) break;
+    if (round == 0) enough = largest * Real(kMeetingResidual);
   }
   stopped.pairs.clear();
 }
