@@ -271,8 +271,7 @@ std::optional<BlowUp> move(Tick<Real>& tick) {
   if (const auto found = find_blow_up(tick.model, state, tick.dt)) return found;
   tick.collision.before_drift(state, tick.dt, tick.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * tick.dt;
-  // Springs that are constraints ask for any velocity that closes them within the step.
-  tick.collision.after_drift(state, tick.dt, tick.profile, compliant);
+  tick.collision.after_drift(state, tick.dt, tick.profile, compliant);  // see keeps_velocity
   return std::nullopt;
 }
 
