@@ -16,6 +16,7 @@
 #include <cassert>
 
 #include "core/contact/constants.h"
+#include "core/contact/parts.h"
 
 namespace weft {
 
@@ -39,19 +40,15 @@ bool run_travel_in_chunks(const TravelPass<Real>& pass, Executor* executor) {
   assert(pass.particles == 0 || (pass.x && pass.v && pass.from && pass.reach && pass.travel2));
   if (!executor || pass.particles < kLeastSharedTravel) return run_travel(pass);
   std::array<bool, kTravelChunks> within;
-  run_chunks(executor, static_cast<int>(kTravelChunks), [&](int chunk) {
-    const auto k = static_cast<std::size_t>(chunk);
-    const std::size_t first = pass.particles * k / kTravelChunks,
-                      last = pass.particles * (k + 1) / kTravelChunks;
-    TravelPass<Real> own = pass;
-    own.particles = last - first;
-    own.x += 3 * first;
-    own.v += 3 * first;
-    own.from += 3 * first;
-    own.reach += first;
-    own.travel2 += first;
-    within[k] = run_travel(own);
-  });
+  run_parts(executor, pass.particles, kTravelChunks,
+            [&](std::size_t part, std::size_t first, std::size_t last) {
+              TravelPass<Real> own = pass;
+              own.particles = last - first;
+              for (const Real** numbers : {&own.x, &own.v, &own.from}) *numbers += 3 * first;
+              own.reach += first;
+              own.travel2 += first;
+              within[part] = run_travel(own);
+            });
   return std::all_of(within.begin(), within.end(), [](bool one) { return one; });
 }
 
@@ -68,15 +65,14 @@ Real deviation_in_chunks(const PathPass<Real>& pass, Executor* executor) {
   assert(pass.particles == 0 || (pass.x && pass.v && pass.base && pass.velocity));
   if (!executor || pass.particles < kLeastSharedTravel) return run_deviation(pass);
   std::array<Real, kTravelChunks> largest;
-  run_chunks(executor, static_cast<int>(kTravelChunks), [&](int chunk) {
-    const auto k = static_cast<std::size_t>(chunk);
-    const std::size_t first = pass.particles * k / kTravelChunks,
-                      last = pass.particles * (k + 1) / kTravelChunks;
-    PathPass<Real> own = pass;
-    own.particles = last - first;
-    for (const Real** numbers : {&own.x, &own.v, &own.base, &own.velocity}) *numbers += 3 * first;
-    largest[k] = run_deviation(own);
-  });
+  run_parts(executor, pass.particles, kTravelChunks,
+            [&](std::size_t part, std::size_t first, std::size_t last) {
+              PathPass<Real> own = pass;
+              own.particles = last - first;
+              for (const Real** numbers : {&own.x, &own.v, &own.base, &own.velocity})
+                *numbers += 3 * first;
+              largest[part] = run_deviation(own);
+            });
   return *std::max_element(largest.begin(), largest.end());
 }
 

@@ -83,7 +83,7 @@ void Room::take_now(Inbound item) {
   if (const auto* grant = std::get_if<Grant>(&item.what)) return admit(found->second, *grant);
   found->second.applied = item.number;
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
-    const bool alone = viewers_.size() < 2;  // whose commands cost nobody else
+    const bool alone = viewers_.size() < 2;  // its commands cost no other viewer
     const double before = alone ? 0 : options_.cpu_clock();
     handle(item.viewer, *request);
     if (!alone) charge(item.viewer, options_.cpu_clock() - before);
