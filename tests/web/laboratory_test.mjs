@@ -10,7 +10,8 @@ import { start_server } from './support/server.mjs';
 
 const { marks_of, overhang, shadow } = await import_page_module('view/textile_marks');
 const { ruler } = await import_page_module('view/ruler');
-const { LaboratoryPanel, measurement_text, test_of } = await import_page_module('panel/laboratory_panel');
+const { LaboratoryPanel, test_of } = await import_page_module('panel/laboratory_panel');
+const { measurement_text } = await import_page_module('panel/laboratory_figures');
 
 const DISC = Math.PI * 0.09 ** 2; // of the drape test [m²]
 
