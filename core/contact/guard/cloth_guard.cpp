@@ -92,6 +92,7 @@ ClothGuard<Real>::ClothGuard(const ClothModel<Real>& model, Executor* executor)
   regions_.sizes.assign(n, Quad<Real>{{0, 0, -1, 0}});
   for (std::vector<char>* array : {&pairs_.is_active, &critical_.is_tight}) array->assign(n, 0);
   critical_.fraction.assign(n, Real(1));
+  critical_.stopped_at.assign(n, 0);
   regions_.wave_of.assign(n, 0);
   regions_.anchored_at.assign(n, 0);
   regions_.parts.resize(kMostParts);
@@ -346,8 +347,8 @@ void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile
     anchor_loose(pairs_, step_, regions_, executor_, counts_);
     stop_crossings(pairs_, step_, regions_, critical_, executor_, counts_);
     profile[Stage::regions].work += counts_.anchored - before;
-    truncate(pairs_, dt, cloths_.reach, attempt >= kRetries, critical_, step_, regions_, paths_,
-             stopped_, state);
+    truncate(pairs_, cloths_, dt, attempt >= kRetries, critical_, step_, regions_, paths_, stopped_,
+             state);
     slack_.left = 0;
     if (strays.empty()) return;
     if (attempt == kMostRetries) break;

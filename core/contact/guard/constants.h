@@ -104,6 +104,17 @@ inline constexpr double kStopShort = 1e-4;
 inline constexpr int kMostMeetings = 40;
 inline constexpr double kMeetingResidual = 1e-3;
 
+/// What is stopped has no more velocity back than takes it by this fraction of the finest mesh's
+/// edges in a substep [1]: faster cloth that is crushed would go on for ticks, in which each
+/// particle endangers a hundred pairs a substep. Larger: longer worst steps. Smaller: momentum is
+/// lost at lower speeds.
+inline constexpr double kMostBack = 0.4;
+
+/// Steps in a row that stop a particle without taking its velocity [1]. More: what is jammed
+/// between hands and objects presses on, and twice as much of its motion is lost. Fewer: two sheets
+/// that hit each other in several steps lose momentum.
+inline constexpr int kMostInARow = 6;
+
 // Tangles.
 
 /// What touched is apart once its gap is more than this many roundings of its particles'

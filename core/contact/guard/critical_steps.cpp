@@ -17,17 +17,15 @@
 namespace weft {
 namespace {
 
-/// Whether the displacements of a pair's particles may be too long for its gap, measured anew.
+/// How far a pair's features must be apart, if its particles may move as their regions let them, or
+/// by their displacements if these are longer [m].
 template <class Real>
-bool is_critical(const GuardedStep<Real>& step, const Regions<Real>& regions,
-                 const std::vector<char>& is_tight, GuardedPair<Real>& pair) {
+Real needed_gap(const GuardedStep<Real>& step, const Regions<Real>& regions,
+                const std::vector<char>& is_tight, const GuardedPair<Real>& pair) {
   const auto [first, second] = largest_on_sides(pair, [&](std::size_t i) {
     return is_tight[i] ? length(step.displacement[i]) : regions.radius(i);
   });
-  const Real needed = first + second + regions.smallest_gap;
-  if (pair.bound >= needed) return false;
-  measure(regions, pair);
-  return !(pair.bound >= needed);
+  return first + second + regions.smallest_gap;
 }
 
 /// Lists the particles whose displacement is longer than their region.
@@ -45,26 +43,46 @@ void find_tight(const GuardedStep<Real>& step, const Regions<Real>& regions,
   }
 }
 
+/// Measures the gaps of the listed pairs anew, and keeps those that are too small.
+template <class Real>
+void measure_critical(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
+                      const Regions<Real>& regions, CriticalSteps<Real>& critical) {
+  critical.pairs.clear();
+  for (PairColumns<Real>& columns : critical.columns) {
+    separate_pairs(regions.anchor, regions.anchor, columns);
+    for (std::size_t k = 0; k < columns.size(); ++k) {
+      GuardedPair<Real>& pair = pairs[columns.a[k]];
+      const PairSeparation<Real> s = columns.separation(k, regions.anchor);
+      pair.bound = s.gap;
+      if (pair.bound >= needed_gap(step, regions, critical.is_tight, pair)) continue;
+      critical.pairs.push_back({columns.a[k], s.normal, s.gap, s.weight});
+    }
+    columns.clear();
+  }
+}
+
 /// Lists the tight particles and the pairs that these endanger.
-/// @return whether some particle of such a pair has to be anchored first; regions.loose lists them
+/// @return whether some particle of such a pair has to be anchored first; regions.loose lists them.
+///         If none has, the pairs' gaps are those where the particles are
 template <class Real>
 bool find_critical(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions,
                    CriticalSteps<Real>& critical) {
   find_tight(step, regions, critical);
-  critical.pairs.clear();
   std::vector<Index>& loose = regions.loose;
   loose.clear();
   ++pairs.listing;
   for (const Index k : critical.tight) {
     for_pairs_of(pairs, at_index(k), [&](GuardedPair<Real>& pair) {
-      if (pair.listed == pairs.listing) return;
-      pair.listed = pairs.listing;
-      if (!is_critical(step, regions, critical.is_tight, pair)) return;
-      critical.pairs.push_back({pairs.number_of(pair)});
-      for (const Index j : pair.particle) {
-        if (regions.anchored_at[at_index(j)] != step.number) loose.push_back(j);
-      }
+      if (std::exchange(pair.listed, pairs.listing) == pairs.listing) return;
+      if (pair.bound < needed_gap(step, regions, critical.is_tight, pair))
+        critical.columns[pair.kind].add(pairs.number_of(pair), 0, pair.particle);
     });
+  }
+  measure_critical(pairs, step, regions, critical);
+  for (const CriticalPair<Real>& c : critical.pairs) {
+    for (const Index k : pairs[c.pair].particle) {
+      if (regions.anchored_at[at_index(k)] != step.number) loose.push_back(k);
+    }
   }
   std::sort(loose.begin(), loose.end());
   loose.erase(std::unique(loose.begin(), loose.end()), loose.end());
@@ -124,10 +142,28 @@ PairHeights<Real> heights_of(const CriticalPair<Real>& c, const GuardedPair<Real
   return h;
 }
 
+/// Allows a particle no more than a fraction of its displacement.
+template <class Real>
+void allow(Real fraction, std::size_t particle, CriticalSteps<Real>& critical) {
+  if (!(fraction < critical.fraction[particle])) return;
+  critical.fraction[particle] = fraction;
+  critical.stopped_at[particle] = ++critical.stops;
+}
+
+/// Whether a particle of a pair was stopped since the pair was found to hold.
+template <class Real>
+bool is_changed(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
+                const CriticalSteps<Real>& critical) {
+  return std::any_of(pair.particle.begin(), pair.particle.end(),
+                     [&](Index k) { return critical.stopped_at[at_index(k)] > c.held_at; });
+}
+
 /// Stops the particles of a pair at two planes in its gap, which is shared as they wanted it.
 template <class Real>
 void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
-                    const GuardedStep<Real>& step, Real smallest_gap, std::vector<Real>& fraction) {
+                    const GuardedStep<Real>& step, Real smallest_gap,
+                    CriticalSteps<Real>& critical) {
+  std::vector<Real>& fraction = critical.fraction;
   const PairHeights<Real> h = heights_of(c, pair, step, fraction);
   const Real spare = c.gap - smallest_gap;
   const Real both = h.wish[0] + h.wish[1];
@@ -139,12 +175,11 @@ void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
     const Real wanted = h.displacement[k];
     if (!(spare > 0)) {
       // No step that rounding could turn into an approach.
-      if (!(c.gap > 0) || wanted > -smallest_gap / 16) fraction[i] = 0;
+      if (!(c.gap > 0) || wanted > -smallest_gap / 16) allow(Real(0), i, critical);
       continue;
     }
     const Real allowed = h.height[k] - h.front[s] + spare * (s == 0 ? part : 1 - part);
-    if (wanted * fraction[i] > allowed)
-      fraction[i] = std::min(fraction[i], allowed / wanted * Real(1 - kStopShort));
+    if (wanted * fraction[i] > allowed) allow(allowed / wanted * Real(1 - kStopShort), i, critical);
   }
 }
 
@@ -158,22 +193,19 @@ void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<
     anchor_loose(pairs, step, regions, executor, counts);
   }
   counts.critical += critical.pairs.size();
-  for (CriticalPair<Real>& c : critical.pairs) {
-    const GuardedPair<Real>& pair = pairs[c.pair];
-    const PairSeparation<Real> s = separate_pair(pair.kind, points_of(pair, step.from));
-    c.normal = s.normal;
-    c.gap = s.gap;
-    c.weight = s.weight;
-  }
   const Real smallest_gap = regions.smallest_gap;
   for (int round = 0;; ++round) {
     stop_point();
     bool changed = false;
     for (CriticalPair<Real>& c : critical.pairs) {
       const GuardedPair<Real>& pair = pairs[c.pair];
-      if (c.fixed || (round < kRounds && holds(c, pair, step, critical.fraction, smallest_gap)))
+      if (c.fixed) continue;
+      if (round > 0 && round < kRounds && !is_changed(c, pair, critical)) continue;
+      if (round < kRounds && holds(c, pair, step, critical.fraction, smallest_gap)) {
+        c.held_at = critical.stops;
         continue;
-      stop_at_planes(c, pair, step, smallest_gap, critical.fraction);
+      }
+      stop_at_planes(c, pair, step, smallest_gap, critical);
       c.fixed = changed = true;
     }
     if (!changed) break;
@@ -181,13 +213,14 @@ void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<
 }
 
 template <class Real>
-void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
-              CriticalSteps<Real>& critical, GuardedStep<Real>& step, Regions<Real>& regions,
-              PredictedPaths<Real>& paths, StoppedParticles<Real>& stopped,
+void truncate(const GuardedPairs<Real>& pairs, const GuardedCloths<Real>& cloths, Real dt,
+              bool stay, CriticalSteps<Real>& critical, GuardedStep<Real>& step,
+              Regions<Real>& regions, PredictedPaths<Real>& paths, StoppedParticles<Real>& stopped,
               ClothState<Real>& state) {
   assert(dt > 0);
   paths.strays.clear();
   ++regions.wave;
+  const Real most_back = cloths.finest * Real(kMostBack) / dt;
   const auto visit = [&](Index k) {
     const auto i = at_index(k);
     if (regions.wave_of[i] == regions.wave) return;
@@ -200,12 +233,13 @@ void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
     const Quad<Real> allowed = step.displacement[i] * fraction;
     step.lost += static_cast<double>(length(step.displacement[i] - allowed));
     const Quad<Real> off = step.from[i] + allowed - paths.at(i, paths.elapsed) - paths.off_now;
-    const bool off_path = !(dot(off, off) <= reach * reach);
+    const bool off_path = !(dot(off, off) <= cloths.reach * cloths.reach);
     if (off_path) paths.strays.push_back(k);
     step.displacement[i] = off_path && stay ? Quad<Real>() : allowed;
     state.x[i] = to_vector(step.from[i]);
     const Vec3<Real> v_drift = to_vector(step.displacement[i]) / dt;
-    note_stopped(k, state.v[i], v_drift, stopped);
+    note_stopped<Real>(k, state.v[i] * std::min(Real(1), most_back / state.v[i].norm()), v_drift,
+                       stopped);
     state.v[i] = v_drift;
   };
   for (const CriticalPair<Real>& c : critical.pairs) {
@@ -221,6 +255,7 @@ template <class Real>
 void forget_critical(CriticalSteps<Real>& critical) {
   critical.pairs.clear();
   critical.tight.clear();
+  critical.columns.clear();
   std::fill(critical.is_tight.begin(), critical.is_tight.end(), 0);
   std::fill(critical.fraction.begin(), critical.fraction.end(), Real(1));
 }

@@ -1,11 +1,14 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
+#include "core/contact/guard/guarded_cloths.h"
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/guarded_step.h"
+#include "core/contact/guard/pair_separation.h"
 #include "core/contact/guard/predicted_paths.h"
 #include "core/contact/guard/regions.h"
 #include "core/contact/guard/stopped_particles.h"
@@ -24,6 +27,7 @@ struct CriticalPair {
   Real gap = 0;                               ///< along the normal [m]
   std::array<Real, 4> weight = {0, 0, 0, 0};  ///< of the closest points
   bool fixed = false;                         ///< stopped at planes
+  std::uint64_t held_at = 0;                  ///< number of stops when it was last found to hold
 };
 
 /// What one step had no region for.
@@ -33,6 +37,9 @@ struct CriticalSteps {
   std::vector<Index> tight;    ///< particles whose displacement is longer than their region
   std::vector<char> is_tight;  ///< of each particle
   std::vector<Real> fraction;  ///< of each one's displacement that is allowed
+  std::uint64_t stops = 0;     ///< how often a fraction was lowered
+  std::vector<std::uint64_t> stopped_at;  ///< of each particle the number of its last stop
+  ColumnsByKind<Real> columns;            ///< pairs to be measured
 };
 
 /// Certifies or stops the displacements of particles that are too long for their regions. Particles
@@ -44,12 +51,11 @@ void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<
 /// Applies to the state what was not allowed, for the coming drift. Particles stopped off their
 /// predicted paths are listed as strays, which ask for pairs around a new one; what the others may
 /// do then is examined anew.
-/// @param reach  radius of the balls around paths [m]
-/// @param stay   strays stay where they are, so that none is stopped a second time
+/// @param stay  strays stay where they are, so that none is stopped a second time
 template <class Real>
-void truncate(const GuardedPairs<Real>& pairs, Real dt, Real reach, bool stay,
-              CriticalSteps<Real>& critical, GuardedStep<Real>& step, Regions<Real>& regions,
-              PredictedPaths<Real>& paths, StoppedParticles<Real>& stopped,
+void truncate(const GuardedPairs<Real>& pairs, const GuardedCloths<Real>& cloths, Real dt,
+              bool stay, CriticalSteps<Real>& critical, GuardedStep<Real>& step,
+              Regions<Real>& regions, PredictedPaths<Real>& paths, StoppedParticles<Real>& stopped,
               ClothState<Real>& state);
 
 /// Forgets what was found in a step that was ended from outside; keeps the memory.

@@ -35,6 +35,7 @@ template <class Real>
 StoppedParticles<Real> stopped_particles(std::size_t particles) {
   StoppedParticles<Real> stopped;
   stopped.place_of.assign(particles, kNone);
+  stopped.in_a_row.assign(particles, {});
   return stopped;
 }
 
@@ -53,9 +54,13 @@ void note_stopped(Index particle, const Vec3<Real>& v, const Vec3<Real>& v_drift
 template <class Real>
 void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v) {
   stopped.any = !stopped.list.empty();
+  ++stopped.step;
   for (const StoppedParticle<Real>& one : stopped.list) {
     const auto i = at_index(one.particle);
-    if (v[i] == one.v_drift) v[i] = one.v;
+    StopsInARow& row = stopped.in_a_row[i];
+    row.count = row.step + 1 == stopped.step ? row.count + 1 : 1;
+    row.step = stopped.step;
+    if (v[i] == one.v_drift && row.count <= kMostInARow) v[i] = one.v;
     stopped.place_of[i] = kNone;
   }
   stopped.list.clear();
@@ -82,6 +87,7 @@ void forget_stopped(StoppedParticles<Real>& stopped) {
   stopped.list.clear();
   stopped.pairs.clear();
   stopped.any = false;
+  stopped.step += 2;  // no row goes on
 }
 
 template <class Real>

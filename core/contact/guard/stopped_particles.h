@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/contact/guard/guarded_pairs.h"
@@ -26,14 +27,23 @@ struct StoppedParticle {
   Vec3<Real> v_drift = Vec3<Real>::Zero();  ///< and that of the drift [m/s]
 };
 
+/// How many steps in a row a particle was stopped.
+struct StopsInARow {
+  std::uint64_t step = 0;  ///< the last of them
+  int count = 0;
+};
+
 /// What is stopped is stopped for one drift. To take its velocity for good would take momentum that
 /// no other particle gets, also along the contact and from what both sides have in common; so each
 /// particle gets its velocity back after the drift, and then the pairs at whose planes it stopped
-/// take their approach from each other.
+/// take their approach from each other. Only what is jammed, and stopped in kMostInARow steps
+/// before, loses it: it would press on for ever.
 template <class Real>
 struct StoppedParticles {
   std::vector<StoppedParticle<Real>> list;
-  std::vector<Index> place_of;  ///< of each particle in the list, or kNone
+  std::vector<Index> place_of;        ///< of each particle in the list, or kNone
+  std::vector<StopsInARow> in_a_row;  ///< of each particle
+  std::uint64_t step = 2;             ///< the one that ended last
   std::vector<StoppedPair<Real>> pairs;
   bool any = false;  ///< something was stopped in the last step
 };
@@ -49,8 +59,8 @@ template <class Real>
 void note_stopped(Index particle, const Vec3<Real>& v, const Vec3<Real>& v_drift,
                   StoppedParticles<Real>& stopped);
 
-/// Gives the particles their velocities back after the drift. One whose velocity is no longer that
-/// of the drift keeps it: something else has stopped it too.
+/// Gives the particles their velocities back after the drift, unless they are jammed. One whose
+/// velocity is no longer that of the drift keeps it: something else has stopped it too.
 template <class Real>
 void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v);
 
