@@ -74,7 +74,7 @@ bool find_critical(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Reg
   for (const Index k : critical.tight) {
     for_pairs_of(pairs, at_index(k), [&](GuardedPair<Real>& pair) {
       if (std::exchange(pair.listed, pairs.listing) == pairs.listing) return;
-      if (pair.bound < needed_gap(step, regions, critical.is_tight, pair))
+      if (!(pair.bound >= needed_gap(step, regions, critical.is_tight, pair)))
         critical.columns[pair.kind].add(pairs.number_of(pair), 0, pair.particle);
     });
   }
