@@ -39,10 +39,11 @@ void check_length(FieldReader& in, const Field& field, const std::string& text) 
   const auto length =
       static_cast<double>(field.form == Form::characters ? character_count(text) : text.size());
   if (length >= field.range.minimum && length <= field.range.maximum) return;
-  if (field.form != Form::secret)
-    return in.fail(ErrorCode::wrong_length, field.name, length_message(field));
+  const Limit allowed{field.range.minimum, field.range.maximum, {}, {}};
+  if (field.form != Form::secret) return in.fail_length(field.name, allowed, length_message(field));
   Error error = make_error(ErrorCode::wrong_length, length_message(field));
   error.field = field.name;  // its value is not repeated
+  error.limit = allowed;
   in.fail(std::move(error));
 }
 

@@ -62,6 +62,14 @@ void FieldReader::fail(ErrorCode code, const char* key, std::string message, std
   fail(std::move(error));
 }
 
+void FieldReader::fail_length(const char* key, Limit length, std::string message,
+                              std::string hint) {
+  Error error = make_error(ErrorCode::wrong_length, std::move(message), std::move(hint));
+  error.field = key;
+  error.limit = std::move(length);
+  if (const json* node = find(key)) error.value = shown_value(*node);
+  fail(std::move(error));
+}
 void FieldReader::fail_type(std::string path, const json& node, const char* wanted) {
   Error error = make_error(ErrorCode::wrong_type, path + " must be " + wanted);
   error.field = std::move(path);
@@ -115,8 +123,9 @@ void FieldReader::read(const char* key, ColliderRef& value) {
   if (!node->is_string()) return fail_type(key, *node, "a name or an index");
   std::string name = node->get<std::string>();
   if (name.empty() || name.size() > kMostSceneBytes)
-    return fail(ErrorCode::wrong_length, key, std::string(key) + " must have 1 to 64 bytes",
-                "an object without a name is told by its index in the list of mesh");
+    return fail_length(key, {1.0, static_cast<double>(kMostSceneBytes), {}, {}},
+                       std::string(key) + " must have 1 to 64 bytes",
+                       "an object without a name is told by its index in the list of mesh");
   value = std::move(name);
 }
 
@@ -126,11 +135,8 @@ void FieldReader::read_numbers(const char* key, std::array<double, N>& value, Ra
   if (node == nullptr) return;
   const std::string wanted = std::to_string(N) + " numbers";
   if (!node->is_array()) return fail_type(key, *node, ("an array of " + wanted).c_str());
-  if (node->size() != N) {
-    fail(ErrorCode::wrong_length, key, std::string(key) + " must have " + wanted);
-    if (error_->field == key && !error_->limit) error_->limit = Limit{{}, {}, N, {}};
-    return;
-  }
+  if (node->size() != N)
+    return fail_length(key, {{}, {}, N, {}}, std::string(key) + " must have " + wanted);
   std::array<double, N> read{};
   for (std::size_t i = 0; i < N && ok(); ++i)
     read_number(std::string(key) + "[" + std::to_string(i) + "]", (*node)[i], read[i], range);
@@ -178,11 +184,10 @@ void FieldReader::read_list(const char* key, std::size_t most, const ReadItem& r
   const json* node = require(key);
   if (node == nullptr) return;
   if (!node->is_array()) return fail_type(key, *node, "an array");
-  if (node->size() > most) {
-    fail(ErrorCode::wrong_length, key,
-         std::string(key) + " must have at most " + std::to_string(most) + " entries");
-    return;
-  }
+  if (node->size() > most)
+    return fail_length(
+        key, {{}, static_cast<double>(most), {}, {}},
+        std::string(key) + " must have at most " + std::to_string(most) + " entries");
   for (std::size_t k = 0; k < node->size() && ok(); ++k)
     read_item(std::string(key) + "[" + std::to_string(k) + "]", (*node)[k]);
 }
@@ -210,7 +215,8 @@ void FieldReader::read_id(const char* key, std::optional<Id>& value) {
   if (node->is_string()) {
     const auto& text = node->get_ref<const std::string&>();
     if (text.empty() || text.size() > kMostIdBytes)
-      return fail(ErrorCode::wrong_length, key, "id must have 1 to 64 bytes");
+      return fail_length(key, {1.0, static_cast<double>(kMostIdBytes), {}, {}},
+                         "id must have 1 to 64 bytes");
     value = text;
   } else {
     double number = 0;

@@ -91,6 +91,8 @@ class FieldReader {
   void fail(Error error);
   /// An error about one field, with its present value.
   void fail(ErrorCode code, const char* key, std::string message, std::string hint = {});
+  /// The same for a wrong length, with the allowed ones.
+  void fail_length(const char* key, Limit length, std::string message, std::string hint = {});
 
  private:
   void read_inner(const std::string& path, const nlohmann::json& node,

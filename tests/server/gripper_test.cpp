@@ -54,6 +54,11 @@ TEST_CASE("an unknown gripper and a moved or released jaw are refused, and nothi
   CHECK(unknown["code"] == "unknown_gripper");
   CHECK(unknown["field"] == "name");
   CHECK(unknown["limit"]["allowed"] == json{"gripper"});
+  // Jaws are not among the objects that are offered.
+  const json none = t.say(1, R"({"op":"move","id":4,"collider":"hand","position":[0,1,0]})");
+  CHECK(none["code"] == "unknown_collider");
+  for (const json& offered : none["limit"]["allowed"])
+    CHECK_THAT(offered.get<std::string>(), !Catch::Contains("gripper"));
   const json jaw = t.say(1, R"({"op":"move","id":2,"collider":"gripper.left","position":[0,1,0]})");
   CHECK(jaw["code"] == "out_of_range");
   CHECK(jaw["field"] == "collider");

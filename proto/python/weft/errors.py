@@ -46,7 +46,8 @@ class CommandError(WeftError):
 
     def __init__(self, message: dict):
         details = [f"field: {message['field']}" if message.get("field") else ""]
-        told = " must be " in message.get("message", "")  # and what is allowed stands behind it
+        text = message.get("message", "")
+        told = " must be " in text or " must have " in text  # and what is allowed stands behind it
         details += ["" if told else _limit_text(message.get("limit") or {}), message.get("hint") or ""]
         super().__init__("; ".join(part for part in (message.get("message", ""), *details) if part))
         self.code: str = message.get("code", "internal")

@@ -58,15 +58,18 @@ def refused_fields():
     yield refuse('{"op":"step","n":9007199254740993}', "out_of_range", field="n")
     yield refuse('{"op":"pause","id":0.5}', "wrong_type", field="id", value=0.5)
     yield refuse('{"op":"pause","id":[1]}', "wrong_type", field="id", value=[1])
-    yield refuse('{"op":"pause","id":""}', "wrong_length", field="id", value="")
+    yield refuse('{"op":"pause","id":""}', "wrong_length", field="id", value="",
+                 limit=limits(1, 64))
     yield refuse('{"op":"pause","id":"' + "i" * 65 + '"}', "wrong_length", field="id")
-    yield refuse('{"op":"hello","name":""}', "wrong_length", field="name", command="hello")
+    yield refuse('{"op":"hello","name":""}', "wrong_length", field="name", command="hello",
+                 limit=limits(1, 32))
     yield refuse('{"op":"hello","name":"' + "é" * 33 + '"}', "wrong_length", field="name")
     yield refuse('{"op":"hello","name":"a\\u0007"}', "unknown_value", field="name")
     yield refuse('{"op":"hello","name":"a\\u0085"}', "unknown_value", field="name")
     for color in ("red", "#12345", "#1234567", "#12345g", ""):
         yield refuse(f'{{"op":"hello","color":"{color}"}}', "unknown_value", field="color", value=color)
-    yield refuse('{"op":"hello","token":"' + "t" * 257 + '"}', "wrong_length", field="token")
+    yield refuse('{"op":"hello","token":"' + "t" * 257 + '"}', "wrong_length", field="token",
+                 limit=limits(0, 256))
     yield refuse('{"op":"pick","direction":[0,0,1]}', "missing_field", field="origin")
     yield refuse('{"op":"pick","id":1,"origin":[0,1,3],"direction":[0,0,0]}', "out_of_range",
                  field="direction", value=[0, 0, 0], id=1, command="pick")
@@ -176,7 +179,8 @@ def refused_fields():
     yield refuse('{"op":"set","winds":[1,0,0]}', "missing_field")
     yield refuse('{"op":"set","fans":{}}', "wrong_type", field="fans", value={})
     yield refuse('{"op":"set","fans":[3]}', "wrong_type", field="fans[0]", value=3)
-    yield refuse('{"op":"set","fans":[{},{},{},{},{}]}', "wrong_length", field="fans")
+    yield refuse('{"op":"set","fans":[{},{},{},{},{}]}', "wrong_length", field="fans",
+                 limit={"maximum": 4})
     yield refuse('{"op":"set","fans":[{"direction":[0,0,1]}]}', "missing_field",
                  field="fans[0].position")
     yield refuse('{"op":"set","wind":[1,0,0],"fans":[{"position":[0,0,0],"direction":[0,0,1]},'
