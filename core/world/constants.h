@@ -30,6 +30,11 @@ inline constexpr double kMostUpdatesPerSecond = 1e10;
 /// that could be served. Smaller: some are accepted that cannot.
 inline constexpr double kSweepsOfNewton = 60;
 
+/// Speed that cloth would have if all energy that a change of its fabric puts into its shape moved
+/// it [m/s]; as fast as a hand. Larger: changes of crumpled cloth to fabrics a million times as
+/// stiff end in ticks of seconds. Smaller: changes that only make it jump are refused.
+inline constexpr double kFastestRelease = 30;
+
 // Substeps.
 
 /// Most substeps that a hand alone may ask for, as a multiple of those for the cloth [1] or as a

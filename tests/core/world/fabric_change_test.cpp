@@ -103,6 +103,34 @@ TEST_CASE("trying a fabric on leaves the world as it was, and a refused one is n
   CHECK(world.hash() == untouched.hash());
 }
 
+TEST_CASE(
+    "a fabric that the present folds would wind up like a spring is refused with the energy") {
+  WorldDef def;
+  ClothDef cloth = test::flat_cloth(21, 21, 0.5, 0.5);
+  cloth.origin = Vec3d(0, 0.5, 0);
+  cloth.u = Vec3d::UnitX();
+  cloth.v = Vec3d(0, 1, 0.1).normalized();
+  def.cloths = {cloth};
+  def.colliders = {{"ground", PlaneDef{}}};
+  def.contact.seed.self = SelfContact::guard;
+  World<float> flat(def);
+  FabricDef board = cloth.fabric;
+  board.bending_warp = board.bending_weft = 10;
+  CHECK_NOTHROW(flat.with_fabric(0, board));  // nothing is bent yet
+  step(flat, 60);                             // it crumples
+  const std::uint64_t hash = flat.hash();
+  try {
+    flat.with_fabric(0, board);
+    FAIL("crumpled cloth became a board");
+  } catch (const DefinitionError& error) {
+    CHECK(error.field == "fabric");
+    CHECK_THAT(error.value, Catch::Contains(" J more"));
+  }
+  CHECK(flat.hash() == hash);
+  board.bending_warp = board.bending_weft = 2 * cloth.fabric.bending_warp;
+  CHECK_NOTHROW(flat.with_fabric(0, board));
+}
+
 TEST_CASE("a fabric unlike the scene's is in the hash, survives a reset, and may be taken back") {
   const World<float> world(swinging(SolverKind::verlet));
   const auto changed = world.with_fabric(0, heavy_fabric());
