@@ -1,10 +1,11 @@
 // Worlds made from a running one: a fork, and one whose cloth has another fabric.
 
+#include <array>
 #include <cassert>
+#include <cstdio>
 #include <string>
 
 #include "core/cloth/softening.h"
-#include "core/definition.h"
 #include "core/error.h"
 #include "core/world/constants.h"
 #include "core/world/model_of.h"
@@ -13,6 +14,13 @@
 namespace weft {
 
 namespace {
+
+/// An energy for people, to three digits.
+std::string joules(double energy) {
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.3g J", energy);
+  return text.data();
+}
 
 /// Throws DefinitionError if the present shape, at rest in its fabric until now, winds the new one
 /// up like a spring: released it would crash through its own folds at hundreds of metres a second,
@@ -25,9 +33,8 @@ void refuse_wound_up(const Energies& before, const Energies& after, double mass,
   const double gained = after.stretch + after.bending - before.stretch - before.bending;
   const double most = mass * kFastestRelease * kFastestRelease / 2;
   if (!(gained > most)) return;
-  throw DefinitionError(field,
-                        "an energy of " + number_text(gained) + " J more in the present shape",
-                        "at most " + number_text(most) + " J",
+  throw DefinitionError(field, joules(gained) + " more in the present shape",
+                        "at most " + joules(most),
                         "change it in smaller steps, or where the cloth is flat");
 }
 
