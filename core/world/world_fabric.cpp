@@ -50,10 +50,9 @@ std::unique_ptr<World<Real>> World<Real>::with_fabric(std::size_t cloth,
   changed->refuse_too_stiff();
   double mass = 0;
   const IndexRange& particles = changed->model_.parts[cloth].particles;
-  for (Index i = particles.first; i < particles.first + particles.count; ++i)
+  for (Index i = particles.first; i < particles.end(); ++i)
     mass += static_cast<double>(changed->model_.mass[at_index(i)]);
-  refuse_wound_up(report_.energies, changed->report_.energies, mass,
-                  cloth == 0 ? "fabric" : "cloths[" + std::to_string(cloth) + "].fabric");
+  refuse_wound_up(report_.energies, changed->report_.energies, mass, cloth_field(cloth, "fabric"));
   return changed;
 }
 

@@ -64,12 +64,11 @@ void FieldReader::fail(ErrorCode code, const char* key, std::string message, std
 
 void FieldReader::fail_length(const char* key, Limit length, std::string message,
                               std::string hint) {
-  Error error = make_error(ErrorCode::wrong_length, std::move(message), std::move(hint));
-  error.field = key;
-  error.limit = std::move(length);
-  if (const json* node = find(key)) error.value = shown_value(*node);
-  fail(std::move(error));
+  if (!ok()) return;
+  fail(ErrorCode::wrong_length, key, std::move(message), std::move(hint));
+  error_->limit = std::move(length);
 }
+
 void FieldReader::fail_type(std::string path, const json& node, const char* wanted) {
   Error error = make_error(ErrorCode::wrong_type, path + " must be " + wanted);
   error.field = std::move(path);

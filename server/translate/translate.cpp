@@ -245,15 +245,11 @@ proto::Result<std::size_t> find_collider(const ServedWorld& world,
     return error;
   }
   const auto& name = std::get<std::string>(wanted);
-  std::vector<std::string> names;  // of those that can be moved
-  const auto is_jaw = [&world](std::size_t k) {
-    return std::any_of(world.grippers().begin(), world.grippers().end(), [k](const auto& gripper) {
-      return gripper.jaw[0] == k || gripper.jaw[1] == k;
-    });
-  };
+  std::vector<std::string> names;
+  const std::size_t movable = colliders.size() - 2 * world.grippers().size();  // then come jaws
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     if (colliders[k].name == name) return k;
-    if (!is_jaw(k) && std::find(names.begin(), names.end(), colliders[k].name) == names.end())
+    if (k < movable && std::find(names.begin(), names.end(), colliders[k].name) == names.end())
       names.push_back(colliders[k].name);
   }
   proto::Error error = proto::word_error("collider", name, std::move(names));
