@@ -6,6 +6,7 @@
 #include <cassert>
 #include <charconv>
 #include <cmath>
+#include <cstdio>
 #include <sstream>
 #include <string_view>
 
@@ -45,6 +46,13 @@ std::string number_text(double value) {
   char buffer[32];
   const auto [stop, status] = std::to_chars(buffer, buffer + sizeof buffer, value);
   return status == std::errc() ? std::string(buffer, stop) : std::string("?");
+}
+
+std::string rounded_text(double value, int digits) {
+  assert(digits >= 1);
+  char buffer[32];
+  std::snprintf(buffer, sizeof buffer, "%.*g", digits, value);
+  return buffer;
 }
 
 FieldInfo choice(const char* name, const char* words, const char* meaning) {

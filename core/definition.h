@@ -69,4 +69,7 @@ std::string nearest_word(const std::string& word, const std::vector<std::string>
 /// A number as short text that parses to the same number.
 std::string number_text(double value);
 
+/// A number for people, to so many digits.
+std::string rounded_text(double value, int digits = 3);
+
 }  // namespace weft

@@ -93,6 +93,14 @@ inline constexpr double kJawNearOpening = 6;
 /// the cloth. Smaller: they take longer to grip.
 inline constexpr double kJawNearStep = 0.25;
 
+/// By how much jaws that cloth resists with more than their force open in a tick, as a fraction of
+/// the thickness of the thickest cloth [1]. Larger: they let go of layers for moments. Smaller:
+/// they press too hard for longer.
+inline constexpr double kJawYield = 0.02;
+
+/// Least force over which an excess counts as a fraction [N].
+inline constexpr double kLeastGrip = 0.01;
+
 /// Jaws touch the cloth between them when their opening exceeds its thickness by no more than this
 /// fraction [1]: rounding. Smaller: jaws that stop exactly at the cloth may count as still open.
 inline constexpr double kJawFacingSlack = 1e-6;

@@ -31,12 +31,33 @@ Pose next_pose(const Gripper& gripper, double seconds) {
   return moved(gripper.pose, {offset * fraction, turn * fraction}, 1);
 }
 
+/// Whether the jaws were stopped by more than the layer that both have in front of them. Where that
+/// is all, they stand at its two sides and its impulses cancel.
+bool grips_layers(const Gripper& gripper) {
+  return gripper.gripping && gripper.opening > 2 * gripper.facing * (1 + kJawFacingSlack);
+}
+
+/// Resistance of the cloth to both jaws in the last tick, without what they squeeze with [N].
+double resistance_of(const Gripper& gripper, const ColliderStates& colliders, double seconds) {
+  const auto of_jaw = [&](std::size_t k) {
+    return colliders[gripper.jaw[k]].impulse.dot(press_of(gripper, k)) / seconds;
+  };
+  return std::max(0.0, std::min(of_jaw(0), of_jaw(1)));
+}
+
 /// Opening of the jaws at the end of the tick [m].
-double next_opening(const Gripper& gripper, double seconds, double thickest) {
-  assert(gripper.opening >= 0 && gripper.facing >= 0);
+/// @param resistance  of the cloth to both [N]
+double next_opening(const Gripper& gripper, double resistance, double seconds, double thickest) {
+  assert(gripper.opening >= 0 && gripper.facing >= 0 && resistance >= 0);
   double step = 2 * gripper.def.closing_speed * seconds;
   if (gripper.wanted >= gripper.opening) return std::min(gripper.wanted, gripper.opening + step);
-  if (gripper.gripping) return gripper.opening;
+  if (gripper.gripping) {
+    // Jaws that meet several layers close too far in the tick in which these resist.
+    const double excess = resistance - gripper.force;
+    if (!(excess > 0) || !grips_layers(gripper)) return gripper.opening;
+    const double part = std::min(1.0, excess / std::max(gripper.force, kLeastGrip));
+    return gripper.opening + std::min(step, part * kJawYield * thickest);
+  }
   if (gripper.opening < kJawNearOpening * thickest) step = std::min(step, kJawNearStep * thickest);
   double least = gripper.wanted;
   // Two faces that both have cloth in front leave a gap for that cloth, and for no less.
@@ -132,7 +153,8 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
     }
     if (gripper.wanted >= gripper.opening) gripper.gripping = false;
     const Pose middle = next_pose(gripper, seconds);
-    const double opening = next_opening(gripper, seconds, thickest);
+    const double resistance = resistance_of(gripper, colliders, seconds);
+    const double opening = next_opening(gripper, resistance, seconds, thickest);
     for (std::size_t k = 0; k < 2; ++k) {
       ColliderState& jaw = colliders[gripper.jaw[k]];
       const Vec3d offset = middle.rotation * offset_of_jaw(gripper.def, k, opening);
@@ -141,7 +163,9 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
       jaw.pace = 1;
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
       jaw.press = press_of(gripper, k);
-      jaw.squeeze = gripper.gripping ? gripper.force : 0;
+      // What layers press back already is part of the force.
+      const double resisted = grips_layers(gripper) ? std::min(resistance, gripper.force) : 0;
+      jaw.squeeze = gripper.gripping ? gripper.force - resisted : 0;
     }
   }
 }
@@ -163,11 +187,8 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     gripper.facing = std::min(left.facing, right.facing);
     if (gripper.wanted >= gripper.opening) continue;
     const double clearance = 2 * gripper.facing * (1 + kJawFacingSlack);
-    const double resistance =
-        std::min(left.impulse.dot(press_of(gripper, 0)), right.impulse.dot(press_of(gripper, 1))) /
-        seconds;
-    const bool stopped =
-        gripper.opening <= clearance || left.blocked || right.blocked || resistance > gripper.force;
+    const bool stopped = gripper.opening <= clearance || left.blocked || right.blocked ||
+                         resistance_of(gripper, colliders, seconds) > gripper.force;
     gripper.gripping = gripper.facing > 0 && (gripper.gripping || stopped);
   }
 }

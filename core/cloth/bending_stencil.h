@@ -100,30 +100,4 @@ void visit_bending_stencils(const ClothPart<Real>& part, Visitor&& visit) {
   }
 }
 
-/// The same for the stencils of the dashpots. Those of a mesh are the three curvatures of each
-/// triangle.
-template <class Real, class Visitor>
-void visit_damped_stencils(const ClothPart<Real>& part, Visitor&& visit) {
-  if (part.bending_time == 0) return;
-  const TriangleCurvatures<Real>& list = part.curvatures;
-  if (list.begin.empty()) {
-    visit_bending_stencils(part, visit);
-    return;
-  }
-  std::vector<Index> corners;
-  std::vector<double> weights;
-  for (std::size_t t = 0; t < list.stiffness.size(); ++t) {
-    corners.clear();
-    for (std::size_t n = list.begin[t]; n < list.begin[t + 1]; ++n)
-      corners.push_back(part.particles.first + list.particles[n]);
-    for (int k = 0; k < 3; ++k) {
-      weights.clear();
-      for (std::size_t n = list.begin[t]; n < list.begin[t + 1]; ++n)
-        weights.push_back(static_cast<double>(list.weights[n][k]));
-      visit(static_cast<double>(list.stiffness[t][k]), corners.data(), weights.data(),
-            static_cast<int>(corners.size()));
-    }
-  }
-}
-
 }  // namespace weft

@@ -41,8 +41,8 @@ namespace HWY_NAMESPACE {
     advance(grid, step, first, last);                                                      \
   }                                                                                        \
   HWY_ATTR void drift_##Kind(const GridView<Real>& grid, Real dt, bool has_external,       \
-                             const Real* v, Real* x) {                                     \
-    drift(grid, dt, has_external, v, x);                                                   \
+                             const Real* v, Real* x, Real* remainder) {                    \
+    drift(grid, dt, has_external, v, x, remainder);                                        \
   }                                                                                        \
   HWY_ATTR void air_forces_##Kind(const GridView<Real>& grid, Real pressure, Real skin) {  \
     air_forces(grid, pressure, skin);                                                      \

@@ -46,9 +46,9 @@ namespace weft {
                     std::ptrdiff_t last) {                                                        \
     HWY_DYNAMIC_DISPATCH(advance_##Kind)(grid, step, first, last);                                \
   }                                                                                               \
-  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v,          \
-                  Real* x) {                                                                      \
-    HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, has_external, v, x);                             \
+  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v, Real* x, \
+                  Real* remainder) {                                                              \
+    HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, has_external, v, x, remainder);                  \
   }                                                                                               \
   void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {                    \
     HWY_DYNAMIC_DISPATCH(air_forces_##Kind)(grid, pressure, skin);                                \

@@ -28,8 +28,9 @@ namespace weft {
   void grid_advance(const GridView<Real>& grid, const GridStep<Real>& step, std::ptrdiff_t first,  \
                     std::ptrdiff_t last);                                                          \
   /** Drift with velocities and positions of the model, which are taken over. Adds powers of the   \
-   * external forces, if there are any, as above. */                                               \
-  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v, Real* x); \
+   * external forces, if there are any, as above. @param remainder  see `drifted` */               \
+  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v, Real* x,  \
+                  Real* remainder);                                                                \
   /** Forces of the air into `external`. @param pressure  1/2 rho C_n [kg/m^3]                     \
    * @param skin  c_t [kg/(m^2 s)] */                                                              \
   void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin);                      \

@@ -337,17 +337,28 @@ void GridPass<Real>::store_velocities(Vec3Array<Real>& v, Executor* executor) {
 
 template <class Real>
 double GridPass<Real>::drift(Real dt, bool has_external, const Vec3Array<Real>& v,
-                             Vec3Array<Real>& x, Executor* executor) {
-  assert(x.size() == v.size());
+                             Vec3Array<Real>& x, Vec3Array<Real>& remainder, Executor* executor) {
+  assert(x.size() == v.size() && remainder.size() == x.size());
   assert(!has_external || !external_.empty());
   std::array<double, kMostBands> power{};
   for_bands(executor, [&](int band, const GridView<Real>& rows) {
-    grid_drift(rows, dt, has_external, v.data()->data(), x.data()->data());
+    grid_drift(rows, dt, has_external, v.data()->data(), x.data()->data(),
+               remainder.data()->data());
     power[static_cast<std::size_t>(band)] = take_power(rows, has_external);
   });
   double sum = 0;
   for (const double part : power) sum += part;
   return sum;
+}
+
+template <class Real>
+void GridPass<Real>::load_remainder(const Vec3Array<Real>& remainder) {
+  grid_take_apart(view_, remainder.data()->data(), view_.remainder(), view_.pitch());
+}
+
+template <class Real>
+void GridPass<Real>::store_remainder(Vec3Array<Real>& remainder) const {
+  grid_put_together(view_, view_.remainder(), view_.pitch(), remainder.data()->data());
 }
 
 template <class Real>

@@ -82,8 +82,13 @@ class GridPass {
 
   /// Loads the model's velocities, moves its positions by dt and loads them too.
   /// @returns power of the external forces [W]; 0 without them
+  /// @param remainder  what drifts lost of the model's positions to rounding [m]
   double drift(Real dt, bool has_external, const Vec3Array<Real>& v, Vec3Array<Real>& x,
-               Executor* executor = nullptr);
+               Vec3Array<Real>& remainder, Executor* executor = nullptr);
+
+  /// The same of the grid's own positions, for and after `advance`.
+  void load_remainder(const Vec3Array<Real>& remainder);
+  void store_remainder(Vec3Array<Real>& remainder) const;
 
   /// Forces of springs, dashpots and bending on each particle of the part [N]. Overwrites its range
   /// of `force`, which is the whole model's, and the external forces, whose arrays it sizes.

@@ -10,6 +10,7 @@
 #include "core/forces/grid_layout-inl.h"
 #include "core/forces/grid_misfit-inl.h"
 #include "core/forces/spring_law-inl.h"
+#include "core/math/drift-inl.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
@@ -178,11 +179,13 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
   const std::ptrdiff_t line = g.line;
   Real* const x = g.motion + r * g.pitch() + component * line;
   Real* const v = x + GridView<Real>::kVelocityLine * line;
+  Real* const lost = x + GridView<Real>::kRemainderLine * line;
   const Real* const inverse = x + (GridView<Real>::kInverseMassLine - component) * line;
   const Real* const external = Pulled ? g.external + (3 * r + component) * line : nullptr;
   const V keep = hn::Set(d, step.keep), scaled_dt = hn::Set(d, step.scaled_dt),
           dt = hn::Set(d, step.dt);
   const V fall = hn::Set(d, step.scaled_dt * step.gravity[component]);
+  const bool drifts = step.dt != 0;
   visit_forces(g, from, [&](std::ptrdiff_t c, V force) HWY_ATTR {
     V pull = force;
     if constexpr (Pulled) {
@@ -194,7 +197,11 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
     const V change = fused(d, force, hn::Mul(inverse_mass, scaled_dt), fall);
     const V speed = hn::IfThenZeroElse(held, fused(d, hn::LoadU(d, v + c), keep, change));
     hn::StoreU(speed, d, v + c);
-    hn::StoreU(hn::Add(hn::LoadU(d, x + c), hn::Mul(speed, dt)), d, x + c);
+    if (drifts) {
+      V remainder = hn::LoadU(d, lost + c);
+      hn::StoreU(drifted(d, hn::LoadU(d, x + c), speed, dt, remainder), d, x + c);
+      hn::StoreU(remainder, d, lost + c);
+    }
     if constexpr (Pulled) hn::StoreU(fused(d, pull, speed, hn::LoadU(d, power + c)), d, power + c);
   });
 }
@@ -233,13 +240,19 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
 /// Moves positions of the model by its velocities and loads both. Accumulates the powers of the
 /// external forces in their line.
 template <class Real>
-HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool has_external, const Real* v, Real* x) {
+HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool has_external, const Real* v, Real* x,
+                      Real* remainder) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
         const auto speed = load_particles(d, v + number);
-        const auto place = load_particles(d, x + number) + speed * hn::Set(d, dt);
+        auto place = load_particles(d, x + number), lost = load_particles(d, remainder + number);
+        const auto seconds = hn::Set(d, dt);
+        place = {drifted(d, place.x, speed.x, seconds, lost.x),
+                 drifted(d, place.y, speed.y, seconds, lost.y),
+                 drifted(d, place.z, speed.z, seconds, lost.z)};
         store_particles(d, place, x + number);
+        store_particles(d, lost, remainder + number);
         Real* const motion = g.motion + r * g.pitch() + c;
         store(d, place, motion, g.line);
         store(d, speed, motion + GridView<Real>::kVelocityLine * g.line, g.line);

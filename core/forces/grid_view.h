@@ -40,7 +40,9 @@ struct GridView {
   int rows = 0, columns = 0;
   std::ptrdiff_t line = 0;             ///< numbers per line, at least the columns in whole vectors
   const GridRow<Real>* row = nullptr;  ///< per row
-  Real* motion = nullptr;     ///< x y z [m], 1/m [1/kg] (0 where pinned), vx vy vz [m/s], unused
+  /// x y z [m], 1/m [1/kg] (0 where pinned), vx vy vz [m/s], and what drifts lost of x y z to
+  /// rounding in this tick [m].
+  Real* motion = nullptr;
   Real* external = nullptr;   ///< forces of air and slings, three lines per row [N]
   Real* wind = nullptr;       ///< velocity of the air, three lines per row [m/s]
   const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0
@@ -49,9 +51,11 @@ struct GridView {
   Real* scratch = nullptr;  ///< kGridScratchLines lines
 
   std::ptrdiff_t pitch() const { return kMotionLines * line; }
+  Real* remainder() const { return motion + kRemainderLine * line; }
   /// Longer, because some stores have an offset.
   std::ptrdiff_t scratch_line() const { return line + kGridLanes; }
-  static constexpr int kMotionLines = 8, kInverseMassLine = 3, kVelocityLine = 4;
+  static constexpr int kMotionLines = 10, kInverseMassLine = 3, kVelocityLine = 4,
+                       kRemainderLine = 7;
 };
 
 /// Lines of scratch: factors of springs, forces for other columns, forces carried to the row below
@@ -67,8 +71,8 @@ double sum_of_columns(const GridView<Real>& grid, const Real* values) {
   return sum;
 }
 
-/// Time step of a grid pass: v <- keep v + scaled_dt (f/m + g), x <- x + dt v. Particles without
-/// inverse mass get velocity 0.
+/// Time step of a grid pass: v <- keep v + scaled_dt (f/m + g), x <- x + dt v (drift-inl.h).
+/// Particles without inverse mass get velocity 0.
 template <class Real>
 struct GridStep {
   Real keep = 0, scaled_dt = 0;  ///< [1], [s]

@@ -36,6 +36,10 @@ inline constexpr int kMostRepairPasses = 64;
 inline constexpr std::size_t kMostMeshVertices = 1'000'000;
 inline constexpr std::size_t kMostMeshTriangles = 2'000'000;
 
+/// Part of the mean edge of a border within which two of its vertices count as one [1]. Larger:
+/// sheets that lie on each other become one cloth. Smaller: seams that were rounded stay open.
+inline constexpr double kOpenSeam = 1e-5;
+
 /// Farthest coordinate of a vertex in a file, before the mesh is scaled [units of the file].
 /// Smaller: meshes in small units are refused, although scaled they would fit.
 inline constexpr float kFarthestFileVertex = 1e6F;

@@ -3,6 +3,7 @@
 #include "core/geometry/mesh_file.h"
 
 #include <cassert>
+#include <cctype>
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -18,6 +19,7 @@
 #include "core/definition.h"
 #include "core/error.h"
 #include "core/geometry/constants.h"
+#include "core/geometry/mesh_seams.h"
 
 namespace weft {
 namespace {
@@ -56,9 +58,13 @@ std::unique_ptr<aiMesh> to_assimp(const TriangleMesh& mesh) {
   return result;
 }
 
+/// In lower case, without the dot.
 std::string ending_of(std::string_view name) {
   const std::size_t dot = name.rfind('.');
-  return dot == std::string_view::npos ? std::string() : std::string(name.substr(dot + 1));
+  if (dot == std::string_view::npos) return {};
+  std::string ending(name.substr(dot + 1));
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending;
 }
 
 DefinitionError unreadable(const std::string& name, const std::string& why) {
@@ -273,6 +279,7 @@ MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFi
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) welder.add(*scene->mMeshes[m]);
   welder.finish();
   if (file.mesh.triangles.empty()) throw unreadable(name, "it has no triangles");
+  close_seams(file);
   return file;
 }
 

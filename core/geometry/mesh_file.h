@@ -32,12 +32,13 @@ struct MeshFileLimits {
   std::size_t triangles = kMostMeshTriangles;
 };
 
-/// Whether the name ends in .obj, .ply, .stl or .glb, in lower case.
+/// Whether the name ends in .obj, .ply, .stl or .glb, in whatever case.
 bool is_mesh_file_name(std::string_view name);
 
 /// Reads OBJ, PLY, STL or GLB. All meshes of the file are merged, with their nodes' transformations
 /// applied; polygons are triangulated, points and lines dropped; vertices at exactly the same
-/// position are merged, in the order of first use in the file. Their uv is that of the first; where
+/// position are merged, in the order of first use in the file, and those of seams that rounding has
+/// opened (mesh_seams.h). Their uv is that of the first; where
 /// others have another, at a seam, `corner_uv` keeps what each triangle has at its corners. A face
 /// without uv in a file with some has all three corners in one place there.
 ///

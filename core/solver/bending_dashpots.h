@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <vector>
 
@@ -9,6 +8,7 @@
 #include "core/executor.h"
 #include "core/math/quad.h"
 #include "core/profile.h"
+#include "core/solver/dashpot_kernels.h"
 #include "core/solver/held_forces.h"
 
 // Dashpots of quadratic bending, which act between ticks.
@@ -38,6 +38,8 @@ class BendingDashpots {
 
   /// Most stages that a part takes over some time [s]: odd, at least 3; 0 if no part damps bending.
   int stages(const ClothModel<Real>& model, double seconds) const;
+  /// Longest relaxation time that a part may have [s]: with kMostDashpotStages.
+  double longest_time(const ClothModel<Real>& model, std::size_t part, double seconds) const;
   /// Estimated work, in updates of a particle by the springs of a grid [1], of the part that takes
   /// most.
   double updates(const ClothModel<Real>& model, double seconds) const;
@@ -50,34 +52,19 @@ class BendingDashpots {
            HeldForces<Real>* held, Executor* executor, Profile& profile);
 
  private:
-  /// Consecutive stencils.
-  struct Run {
-    std::size_t first, end;
-    bool inside;  ///< all of their particles are the band's
-  };
-  /// Consecutive particles, which one thread works on. A stencil on a border is evaluated by all
+  /// Consecutive particles, which one thread works on. A batch on a border is evaluated by all
   /// bands that it touches, and each adds to its own particles: in the same order, whatever the
   /// bands are.
   struct Band {
-    std::size_t first = 0, end = 0;                  ///< of its particles
-    std::size_t first_stencil = 0, end_stencil = 0;  ///< its share of all stencils
-    std::vector<Run> runs;                           ///< of those that touch it, ascending
-
-    bool has(Index particle) const {
-      const auto i = static_cast<std::size_t>(particle);
-      return i >= first && i < end;
-    }
+    std::size_t first = 0, end = 0;  ///< of its particles
+    std::vector<DashpotRun> shares;  ///< its share of all batches, by family
+    /// Batches that touch it, by family, ascending.
+    std::vector<std::vector<DashpotRun>> touching;
   };
-  /// Stencils of a part, one behind the other. Particles are those of the model.
   struct Part {
     std::size_t number = 0;
-    std::vector<std::size_t> begin;  ///< of each one's particles, and the last one's end
-    std::vector<Index> particles;
-    std::vector<Real> weights;    ///< of each particle; 0 if it only defines the normal
-    std::vector<Real> viscosity;  ///< tau k of each stencil
-    /// Places in each stencil's list: the normal is that of the lines from the first to the second
-    /// and from the third to the fourth.
-    std::vector<std::array<std::size_t, 4>> plane;
+    std::vector<DashpotFamily<Real>> families;
+    std::size_t stencils = 0;
     Band whole;               ///< all particles
     std::vector<Band> bands;  ///< the same in several; empty if that is not worth it
   };
@@ -87,23 +74,15 @@ class BendingDashpots {
     Real now, before, product, start;
   };
 
-  void list(const ClothModel<Real>& model, const ClothPart<Real>& part, Part& list) const;
   void divide(const IndexRange& particles, Part& part) const;
-  Real rate_of(const Part& part, std::size_t stencil, const QuadArray<Real>& v) const;
-  void aim(const Part& part, const Band& band, const Vec3Array<Real>& x);
-  void multiply(const Part& part, const Band& band, const QuadArray<Real>& v,
-                QuadArray<Real>& product) const;
   void begin(const Band& band, const Vec3Array<Real>& v);
-  void open(const Part& part, const Band& band, Real by_start,
-            const std::vector<Real>& inverse_mass);
-  void advance(const Part& part, const Band& band, const Factors& by,
+  void open(Part& part, const Band& band, Real by_start, const std::vector<Real>& inverse_mass);
+  void advance(Part& part, const Band& band, const Factors& by,
                const std::vector<Real>& inverse_mass);
-  void pass(const Part& part, int stages, Real seconds, Executor* executor,
-            ClothState<Real>& state);
+  void aim(Part& part, Executor* executor, const Vec3Array<Real>& x);
+  void pass(Part& part, int stages, Real seconds, Executor* executor, ClothState<Real>& state);
 
   std::vector<Part> parts_;
-  QuadArray<Real>
-      gradient_;  ///< of b sqrt(tau k) at each particle of each stencil of the present part
   // Of each particle:
   QuadArray<Real> start_;         ///< K times the velocities at the start [N]
   QuadArray<Real> now_, before_;  ///< impulses after a stage and the one before it [N s]

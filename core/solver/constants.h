@@ -53,9 +53,14 @@ inline constexpr int kMostDashpotStages = 1000;
 /// threads that synchronise at every stage and the stencils of borders cost more than they save.
 inline constexpr std::size_t kDashpotBandParticles = 2048, kMostDashpotBands = 8;
 
-/// Stencils that all bands have together at most, over those of the cloth [1]: what is on a border
-/// is evaluated several times. Larger: cloths whose particles are in no order are divided too, at a
-/// cost that several threads do not make good.
+/// Time of a stage for each slot of a group, in that of an update of a particle by the springs of a
+/// grid [1]: measured on one processor. Larger: more damped fabrics are refused. Smaller: ticks may
+/// take longer than their cost said.
+inline constexpr double kDashpotUpdates = 0.25;
+
+/// Batches of stencils that all bands have together at most, over those of the cloth [1]: what is
+/// on a border is evaluated several times. Larger: cloths whose particles are in no order are
+/// divided too, at a cost that several threads do not make good.
 inline constexpr double kMostTouched = 1.25;
 
 // The moduli of XPBD.

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "core/forces/kick-inl.h"
+#include "core/math/drift-inl.h"
 #include "core/solver/vector_passes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -37,10 +38,12 @@ HWY_INLINE void kick(const KickPass<Real>& p) {
 }
 
 template <class Real>
-HWY_INLINE void drift(std::size_t count, const Real* v, Real dt, Real* x) {
+HWY_INLINE void drift(std::size_t count, const Real* v, Real dt, Real* x, Real* remainder) {
   for_each_number<Real>(count, [&](auto d, std::size_t n) HWY_ATTR {
-    const auto displacement = hn::Mul(hn::LoadU(d, v + n), hn::Set(d, dt));
-    hn::StoreU(hn::Add(hn::LoadU(d, x + n), displacement), d, x + n);
+    auto lost = hn::LoadU(d, remainder + n);
+    hn::StoreU(drifted(d, hn::LoadU(d, x + n), hn::LoadU(d, v + n), hn::Set(d, dt), lost), d,
+               x + n);
+    hn::StoreU(lost, d, remainder + n);
   });
 }
 
@@ -50,11 +53,12 @@ HWY_ATTR void kick_f32(const KickPass<float>& pass) {
 HWY_ATTR void kick_f64(const KickPass<double>& pass) {
   kick(pass);
 }
-HWY_ATTR void drift_f32(std::size_t count, const float* v, float dt, float* x) {
-  drift(count, v, dt, x);
+HWY_ATTR void drift_f32(std::size_t count, const float* v, float dt, float* x, float* remainder) {
+  drift(count, v, dt, x, remainder);
 }
-HWY_ATTR void drift_f64(std::size_t count, const double* v, double dt, double* x) {
-  drift(count, v, dt, x);
+HWY_ATTR void drift_f64(std::size_t count, const double* v, double dt, double* x,
+                        double* remainder) {
+  drift(count, v, dt, x, remainder);
 }
 
 }  // namespace HWY_NAMESPACE

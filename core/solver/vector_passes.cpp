@@ -26,12 +26,12 @@ void run_kick(const KickPass<double>& pass) {
   HWY_DYNAMIC_DISPATCH(kick_f64)(pass);
 }
 
-void run_drift(std::size_t count, const float* v, float dt, float* x) {
-  HWY_DYNAMIC_DISPATCH(drift_f32)(count, v, dt, x);
+void run_drift(std::size_t count, const float* v, float dt, float* x, float* remainder) {
+  HWY_DYNAMIC_DISPATCH(drift_f32)(count, v, dt, x, remainder);
 }
 
-void run_drift(std::size_t count, const double* v, double dt, double* x) {
-  HWY_DYNAMIC_DISPATCH(drift_f64)(count, v, dt, x);
+void run_drift(std::size_t count, const double* v, double dt, double* x, double* remainder) {
+  HWY_DYNAMIC_DISPATCH(drift_f64)(count, v, dt, x, remainder);
 }
 
 }  // namespace weft

@@ -25,7 +25,8 @@ void run_kick(const KickPass<float>& pass);
 void run_kick(const KickPass<double>& pass);
 
 /// x <- x + v dt.
-void run_drift(std::size_t count, const float* v, float dt, float* x);
-void run_drift(std::size_t count, const double* v, double dt, double* x);
+/// @param remainder  what earlier drifts lost to rounding, and what they now have lost [m]
+void run_drift(std::size_t count, const float* v, float dt, float* x, float* remainder);
+void run_drift(std::size_t count, const double* v, double dt, double* x, double* remainder);
 
 }  // namespace weft

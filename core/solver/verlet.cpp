@@ -205,8 +205,7 @@ double external_work(const Tick<Real>& tick, const IndexRange& range) {
     for (std::size_t k = 0; k < 4; ++k) sums[k] += static_cast<double>(force[n + k] * v[n + k]);
   }
   for (std::size_t n = whole; n < count; ++n) sums[0] += static_cast<double>(force[n] * v[n]);
-  const double power = (sums[0] + sums[1]) + (sums[2] + sums[3]);
-  return power * static_cast<double>(tick.dt);
+  return ((sums[0] + sums[1]) + (sums[2] + sums[3])) * static_cast<double>(tick.dt);
 }
 
 /// Whether grids reload all particles after each drift, because contact may have changed them.
@@ -219,14 +218,16 @@ bool takes_over(const Collision<Real>& collision) {
 template <class Real>
 double drift(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
-  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
+  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v, &lost = tick.work.remainder;
+  keep_held(tick);
   const bool along =
       tick.solver.damping_sweeps == 1 && (tick.has_external_forces || !takes_over(tick.collision));
   double work = 0;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     if (tick.sleeps(p)) continue;
     if (tick.by_rows(p) && along) {
-      work += tick.grid(p).drift(tick.dt, tick.has_external_forces, v, x, tick.work.executor) *
+      GridPass<Real>& grid = tick.grid(p);
+      work += grid.drift(tick.dt, tick.has_external_forces, v, x, lost, tick.work.executor) *
               static_cast<double>(tick.dt);
     } else {
       work += external_work(tick, tick.part(p).particles);
@@ -366,6 +367,7 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   for (GridPass<Real>& grid : work.grids) {
     if (grid.fits()) grid.load_inverse_mass(state.inverse_mass);
   }
+  std::fill(work.remainder.begin(), work.remainder.end(), Vec3<Real>::Zero());
   load_grids(tick);
   result.before = timed_energies(tick).energies;
   if (collision.empty() && !collision.meter && !has_hands && work.all_grids &&

@@ -54,6 +54,7 @@ struct Surroundings {
   bool air = false;                         ///< whether air forces are computed
   double air_density = 0;                   ///< [kg/m^3]
   Vec3Array<Real> wind;                     ///< at each particle [m/s]; only if `air`
+  Vec3d gusts_ahead = Vec3d::Zero();        ///< of where the mean wind alone carries them [m]
 };
 
 /// Result of one tick of a solver.
@@ -74,6 +75,7 @@ struct VerletWorkspace {
   Vec3Array<Real> internal;              ///< forces of springs and bending [N]
   Vec3Array<Real> external;              ///< forces of sling impulses and air [N]
   Vec3Array<Real> velocity;              ///< estimate of the velocity for the dashpots [m/s]
+  Vec3Array<Real> remainder;             ///< of positions: lost by this tick's drifts to rounding
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
                                          ///< other code moves the cloth
   std::vector<std::optional<ElasticEnergy>> at_rest;  ///< of each sleeping part, once known
@@ -111,7 +113,9 @@ struct VerletWorkspace {
 
 /// Leapfrog over one tick (Verlet 1967), with half a kick at its start and its end, so that
 /// positions and velocities are synchronous at the tick's end. Velocity is a separate variable,
-/// because position-only Verlet loses float precision at small steps. Damping is split exactly: v
+/// because position-only Verlet loses float precision at small steps; positions are summed with
+/// what rounding took from them in the same tick (drift-inl.h), as slow cloth with many substeps
+/// would stand still. Damping is split exactly: v
 /// <- [v (1 - a dt/2) + dt f/m]/(1 + a dt/2). Contact corrects the velocities between each kick and
 /// drift; the seed's contact also corrects positions after it.
 ///

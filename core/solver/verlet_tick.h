@@ -72,6 +72,14 @@ void hold_kick(const Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real
   if (tick.collision.held) tick.collision.held->act(tick.surroundings, tick.state.x, v, k.seconds);
 }
 
+/// What standing jaws hold does not move by what rounding took from it, added up.
+template <class Real>
+void keep_held(const Tick<Real>& tick) {
+  if (!tick.collision.objects) return;
+  tick.collision.objects->for_each_held(
+      [&tick](Index i) { tick.work.remainder[static_cast<std::size_t>(i)].setZero(); });
+}
+
 inline std::size_t size_of(const IndexRange& range) {
   assert(range.count >= 0);
   return static_cast<std::size_t>(range.count);

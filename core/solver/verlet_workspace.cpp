@@ -25,6 +25,7 @@ void VerletWorkspace<Real>::prepare(const ClothModel<Real>& model, const SolverD
     listed = listed || !kicks_at_once(model, p);
   }
   external.clear();
+  remainder.assign(model.mass.size(), Vec3<Real>::Zero());
   internal.assign(listed ? model.mass.size() : 0, Vec3<Real>::Zero());
   velocity.assign(solver.damping_sweeps > 1 ? model.mass.size() : 0, Vec3<Real>::Zero());
   if (solver.damping_sweeps > 1) allocate_external(model, false, true);
@@ -58,7 +59,7 @@ void VerletWorkspace<Real>::load_paths(const CalmPaths<Real>& paths) {
 template <class Real>
 std::size_t VerletWorkspace<Real>::bytes() const {
   std::size_t sum = 0;
-  for (const Vec3Array<Real>* array : {&internal, &external, &velocity})
+  for (const Vec3Array<Real>* array : {&internal, &external, &velocity, &remainder})
     sum += array->capacity() * sizeof(Vec3<Real>);
   for (const GridPass<Real>& grid : grids) sum += grid.bytes();
   for (const MeshPass<Real>& mesh : meshes) sum += mesh.bytes();

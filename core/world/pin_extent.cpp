@@ -91,22 +91,17 @@ PinExtent strip(const ClothModel<Real>& model, const Pin& pin, const EdgeStrip& 
   return extent;
 }
 
-std::string number(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.3g", value);
-  return text;
-}
-
 std::string describe(const PinExtent& pin) {
   const std::string name = "pins[" + std::to_string(pin.pin) + "]: ";
   const std::string clamped = pin.clamps ? ", and clamps it where it was asked to" : "";
   if (pin.asked_area == 0)
-    return name + "a strip of " + number(pin.asked) + " m holds the fabric up to " +
-           number(pin.held) + " m from its side" + clamped;
-  const std::string reach =
-      pin.held > 0 ? ", up to " + number(pin.held) + " m from its middle" : ": a single particle";
-  return name + "a disc of " + number(pin.asked) + " m holds " + number(pin.held_area) + " m2 of " +
-         number(pin.asked_area) + reach + clamped;
+    return name + "a strip of " + rounded_text(pin.asked) + " m holds the fabric up to " +
+           rounded_text(pin.held) + " m from its side" + clamped;
+  const std::string reach = pin.held > 0
+                                ? ", up to " + rounded_text(pin.held) + " m from its middle"
+                                : ": a single particle";
+  return name + "a disc of " + rounded_text(pin.asked) + " m holds " + rounded_text(pin.held_area) +
+         " m2 of " + rounded_text(pin.asked_area) + reach + clamped;
 }
 
 }  // namespace

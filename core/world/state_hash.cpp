@@ -32,6 +32,7 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
   const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace);
   feed(hash, own.data(), own.size());
   if (state.overload > 0) feed(hash, &state.overload, 1);
+  if (state.squeeze > 0) feed(hash, &state.impulse, 1);  // to which the jaw may yield
   if (!state.move) return;
   const auto wanted = numbers_of(state.move->target, state.move->speed, state.move->turn_speed);
   feed(hash, wanted.data(), wanted.size());
@@ -84,6 +85,7 @@ std::vector<double> numbers_of(const FabricDef& fabric) {
 void feed(XXH64_state_t& hash, const Conditions& conditions) {
   const std::vector<double> present = numbers_of(conditions.present);
   if (present != numbers_of(conditions.defined)) feed(hash, present.data(), present.size());
+  if (!conditions.gusts_ahead.isZero(0)) feed(hash, &conditions.gusts_ahead, 1);
   if (conditions.softness != 1) feed(hash, &conditions.softness, 1);
   assert(conditions.cloths.size() == conditions.scene_fabrics.size());
   for (std::size_t k = 0; k < conditions.cloths.size(); ++k) {

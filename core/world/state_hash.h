@@ -18,6 +18,7 @@ namespace weft {
 struct Conditions {
   const EnvironmentDef& present;
   const EnvironmentDef& defined;
+  const Vec3d& gusts_ahead;                     ///< see `sample_air`
   double softness = 1;                          ///< see World::set_softness
   const std::vector<ClothDef>& cloths;          ///< with their present fabrics
   const std::vector<FabricDef>& scene_fabrics;  ///< one for each
@@ -25,8 +26,8 @@ struct Conditions {
 
 /// XXH64 over the bits of everything that determines the future of a world: positions, velocities,
 /// pin counts of particles, grabs with their targets, colliders that moved or have a command,
-/// grippers, sleeping cloths, an environment, softness or fabric that differs from the scene's, and
-/// the tick unless all cloths sleep.
+/// grippers, sleeping cloths, an environment, softness or fabric that differs from the scene's,
+/// gusts that a change of the wind has put elsewhere, and the tick unless all cloths sleep.
 /// @param asleep  for each cloth 1 if it sleeps
 template <class Real>
 std::uint64_t state_hash(const ClothState<Real>& state, const Pins& pins, const Grabs<Real>& grabs,

@@ -56,6 +56,23 @@ void check_edges(const Vec3Array<Real>& x, const std::vector<Edge>& edges) {
   }
 }
 
+/// Throws DefinitionError if a particle starts farther from the origin than cloth may get: each
+/// tick would be taken back.
+template <class Real>
+void check_places(const ClothModel<Real>& model, const Vec3Array<Real>& x) {
+  for (std::size_t p = 0; p < model.parts.size(); ++p) {
+    const IndexRange& range = model.parts[p].particles;
+    for (Index i = range.first; i < range.end(); ++i) {
+      const auto far = static_cast<double>(x[static_cast<std::size_t>(i)].norm());
+      if (far <= kFarthestFromOrigin) continue;
+      throw DefinitionError("cloths[" + std::to_string(p) + "]",
+                            "a particle " + rounded_text(far) + " m from the origin",
+                            "at most " + number_text(kFarthestFromOrigin) + " m",
+                            "place it nearer; a mesh in millimetres has the scale 0.001");
+    }
+  }
+}
+
 /// The definition after validation, with the jaws of grippers among its colliders; nothing is built
 /// from an invalid one.
 WorldDef validated(WorldDef def) {
@@ -77,6 +94,7 @@ World<Real>::World(const WorldDef& def, const Runtime& runtime)
   if (def_.start) validate(*def_.start, model_.mass.size());
   state_ = state_at(def_.start, model_);
   if (def_.start) check_edges(state_.x, model_.edges);
+  check_places(model_, state_.x);
   build_contact();
   prepare_solver();
   refuse_too_stiff();
@@ -106,10 +124,17 @@ void World<Real>::build_contact() {
 /// Throws DefinitionError if a tick would take too many substeps, or stages of solved dashpots.
 template <class Real>
 void World<Real>::refuse_too_stiff() const {
-  if (solvers_.dashpots.stages(model_, tick_seconds()) > kMostDashpotStages)
-    throw DefinitionError("fabric.bending_damping", "too long for this mesh and tick",
-                          "at most " + std::to_string(kMostDashpotStages) + " stages a tick",
-                          "lower it or the resolution, or raise tick_rate");
+  for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+    const double given = static_cast<double>(model_.parts[p].bending_time);
+    const double longest = solvers_.dashpots.longest_time(model_, p, tick_seconds());
+    if (given > longest)
+      throw DefinitionError(
+          "fabric.bending_damping", "longer than this mesh and tick allow",
+          "at most " + rounded_text(longest) + " s for " + std::to_string(kMostDashpotStages) +
+              " stages a tick",
+          "a coarser mesh, a pin whose border is not close beside particles, or a "
+          "higher tick_rate allows more");
+  }
   if (choose_substeps(solver_of(def_)) <= kMostSubsteps) return;
   throw DefinitionError("fabric", "too stiff for this mesh and tick",
                         "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
@@ -143,6 +168,7 @@ void World<Real>::reset() {
   tick_ = 0;
   swing_.begin_anew();
   if (!def_.winds.empty()) environment_.wind = def_.environment.wind;
+  surroundings_.gusts_ahead.setZero();
   report_ = TickReport{};
   report_.profile.clock = runtime_.clock;
   accept_state();
@@ -286,7 +312,8 @@ void World<Real>::sample_surroundings() {
   assert(surroundings_.wind.size() == model_.mass.size() && "allocate_external comes first");
   const StageTimer timer(report_.profile, Stage::air, 0);
   const double time = static_cast<double>(tick_) / def_.tick_rate;
-  report_.profile[Stage::fans].work += sample_air(environment_, time, state_.x, surroundings_.wind);
+  report_.profile[Stage::fans].work +=
+      sample_air(environment_, time, surroundings_.gusts_ahead, state_.x, surroundings_.wind);
 }
 
 /// The chosen contact; none if there is nothing to meet.

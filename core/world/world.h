@@ -280,6 +280,7 @@ class World {
   void renew_clamps();
   void restore_hinges(std::size_t part);
   void refuse_jaw(std::size_t collider) const;
+  void turn_wind(const Vec3d& wind);
   void take_fabric(std::size_t cloth, const FabricDef& fabric);
   void build_contact();
   void masses_changed();
@@ -367,7 +368,7 @@ class World {
     ColliderStates colliders;
     std::vector<Gripper> grippers;
     std::vector<SceneHand> scene_hands;
-    Vec3d wind = Vec3d::Zero();
+    Vec3d wind = Vec3d::Zero(), gusts_ahead = Vec3d::Zero();
     EnergyAccount account{0};
     EnergyBalance balance;             ///< if it is measured
     std::optional<Sleep<Real>> sleep;  ///< if the scene lets cloth sleep

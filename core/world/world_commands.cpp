@@ -171,10 +171,19 @@ bool World<Real>::release_collider(std::size_t collider) {
 template <class Real>
 void World<Real>::set_environment(const EnvironmentDef& environment) {
   validate(environment);
+  turn_wind(environment.wind);
   environment_ = environment;
   wake_all();
   allocate_external();
   report_motion();
+}
+
+/// Changes the mean wind. The gusts go on where they are.
+template <class Real>
+void World<Real>::turn_wind(const Vec3d& wind) {
+  const double time = static_cast<double>(tick_) / def_.tick_rate;
+  surroundings_.gusts_ahead += (environment_.wind - wind) * time;
+  environment_.wind = wind;
 }
 
 template <class Real>
@@ -240,7 +249,8 @@ std::optional<ClothHit> World<Real>::pick(const Vec3d& origin, const Vec3d& dire
 template <class Real>
 std::uint64_t World<Real>::hash() const {
   return state_hash(state_, pins_, grabs_, def_.colliders, colliders_, grippers_, sleep_.asleep(),
-                    {environment_, def_.environment, softness_, def_.cloths, scene_fabrics_},
+                    {environment_, def_.environment, surroundings_.gusts_ahead, softness_,
+                     def_.cloths, scene_fabrics_},
                     tick_);
 }
 
@@ -251,9 +261,11 @@ std::uint64_t World<Real>::hash_before_tick() const {
   EnvironmentDef environment = environment_;
   environment.wind = before.wind;
   const Sleep<Real>& sleep = before.sleep ? *before.sleep : sleep_;
-  return state_hash(before.state, before.pins, before.grabs, def_.colliders, before.colliders,
-                    before.grippers, sleep.asleep(),
-                    {environment, def_.environment, softness_, def_.cloths, scene_fabrics_}, tick_);
+  return state_hash(
+      before.state, before.pins, before.grabs, def_.colliders, before.colliders, before.grippers,
+      sleep.asleep(),
+      {environment, def_.environment, before.gusts_ahead, softness_, def_.cloths, scene_fabrics_},
+      tick_);
 }
 
 template <class Real>
@@ -319,6 +331,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template bool World<Real>::command_gripper(std::size_t, const GripperCommand&);       \
   template bool World<Real>::release_collider(std::size_t);                             \
   template void World<Real>::set_environment(const EnvironmentDef&);                    \
+  template void World<Real>::turn_wind(const Vec3d&);                                   \
   template void World<Real>::set_softness(double);                                      \
   template std::optional<ClothHit> World<Real>::pick(const Vec3d&, const Vec3d&) const; \
   template std::uint64_t World<Real>::hash() const;                                     \

@@ -17,9 +17,7 @@ namespace {
 
 /// An energy for people, to three digits.
 std::string joules(double energy) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3g J", energy);
-  return text.data();
+  return rounded_text(energy) + " J";
 }
 
 /// Throws DefinitionError if the present shape, at rest in its fabric until now, winds the new one

@@ -225,6 +225,7 @@ void World<Real>::keep_checkpoint() {
   checkpoint_.grippers = grippers_;
   checkpoint_.scene_hands = scene_hands_;
   checkpoint_.wind = environment_.wind;
+  checkpoint_.gusts_ahead = surroundings_.gusts_ahead;
   checkpoint_.account = account_;
   if (energy_) checkpoint_.balance = energy_->balance;
   if (sleep_.wanted()) checkpoint_.sleep = sleep_;
@@ -241,6 +242,7 @@ void World<Real>::go_back() {
   grippers_ = checkpoint_.grippers;
   scene_hands_ = checkpoint_.scene_hands;
   environment_.wind = checkpoint_.wind;
+  surroundings_.gusts_ahead = checkpoint_.gusts_ahead;
   account_ = checkpoint_.account;
   if (energy_) energy_->balance = checkpoint_.balance;
   assert(!sleep_.wanted() || checkpoint_.sleep);

@@ -93,7 +93,7 @@ void World<Real>::run_script() {
   }
   for (const WindKey& key : def_.winds) {
     if (tick_of(key.time) != tick_) continue;
-    environment_.wind = key.wind;
+    turn_wind(key.wind);
     wake_all();
   }
   assert(scene_hands_.size() == def_.hands.size());

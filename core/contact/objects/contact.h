@@ -102,6 +102,15 @@ class Contact {
   double deepest_penetration(const Vec3Array<Real>& x) const;
 
   const std::vector<ContactRow<Real>>& rows() const { return rows_.all; }
+
+  /// Calls visit(particle) for what jaws that stand hold in this substep.
+  void for_each_held(auto&& visit) const {
+    for (const MovingRow<Real>& moving : rows_.moving) {
+      if (moving.grip == 0 || shapes_.frames[moving.collider].moves) continue;
+      const ContactRow<Real>& row = rows_.all[moving.row];
+      for (std::size_t k = 0; k < row.count; ++k) visit(row.particle[k]);
+    }
+  }
   /// Distance of a row's point of the cloth from the row's object where both are now [m]; from its
   /// plane, if the object has no inside.
   Real gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) const;

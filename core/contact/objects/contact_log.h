@@ -50,27 +50,35 @@ class ContactLog {
   void see(const auto& rows, const auto& state) {
     if (sums_.size() == rows.size()) return;
     sums_.clear();
-    for (const auto& row : rows) sums_.push_back({Vec3d::Zero(), mass_of(row, state)});
+    for (const auto& row : rows) {
+      sums_.emplace_back();
+      sums_.back().mass = mass_of(row, state);
+    }
   }
 
   /// Notes that row `r` got an impulse from an object.
   /// @param change  of the velocity of the row's point [m/s]; it is shared by mass
   void add(const auto& rows, std::size_t r, const auto& change) {
-    assert(r < sums_.size());
-    add_impulse(rows, r, change.template cast<double>() * sums_[r].mass);
-  }
-
-  /// The same, with the impulse [N s].
-  void add_impulse(const auto& rows, std::size_t r, const Vec3d& impulse) {
     assert(sums_.size() == rows.size() && "see comes first");
+    const Vec3d impulse = change.template cast<double>() * sums_[r].mass;
     sums_[r].impulse += impulse;
     if (each_wanted_) entries_.push_back({entry_of(rows[r]), impulse});
+  }
+
+  /// Notes its share of what a jaw squeezes with [N s], all of which is pressure: it acts along the
+  /// jaw's press, as that of the other jaw does, however the row leans.
+  void add_squeeze(const auto& rows, std::size_t r, const Vec3d& impulse) {
+    assert(sums_.size() == rows.size() && "see comes first");
+    sums_[r].squeeze += impulse;
+    if (!each_wanted_) return;
+    entries_.push_back({entry_of(rows[r]), impulse});
+    entries_.back().first.normal = impulse.normalized();
   }
 
   /// Notes what is not one of the rows: it got a change of velocity [m/s].
   void add_apart(const auto& row, const auto& change, const auto& state) {
     const Vec3d impulse = change.template cast<double>() * mass_of(row, state);
-    book(row, impulse);
+    book(row, impulse, Vec3d::Zero());
     if (each_wanted_) entries_.push_back({entry_of(row), impulse});
   }
 
@@ -103,7 +111,8 @@ class ContactLog {
  private:
   /// What a row got since it was booked last.
   struct RowSum {
-    Vec3d impulse = Vec3d::Zero();  ///< [N s]
+    Vec3d impulse = Vec3d::Zero();  ///< of the solver [N s]
+    Vec3d squeeze = Vec3d::Zero();  ///< of jaws [N s]
     double mass = 0;                ///< impulse for a change of velocity of its point [kg]
   };
   /// A contact with all that it got in this tick. Several triangles of an object may push the same
@@ -112,7 +121,7 @@ class ContactLog {
     ContactPoint contact;
     double offset = 0;              ///< of the plane [m]
     Vec3d impulse = Vec3d::Zero();  ///< [N s]
-    Vec3d along = Vec3d::Zero();    ///< its parts along the normals [N s]
+    Vec3d along = Vec3d::Zero();    ///< its parts along the normals, and squeezes [N s]
     Index next = kNone;             ///< another with the same first particle
   };
 
@@ -146,15 +155,16 @@ class ContactLog {
     return true;
   }
   void book_sum(const auto& row, RowSum& sum) {
-    if (sum.impulse.isZero(0)) return;
-    book(row, sum.impulse);
+    if (sum.impulse.isZero(0) && sum.squeeze.isZero(0)) return;
+    book(row, sum.impulse, sum.squeeze);
     sum.impulse.setZero();
+    sum.squeeze.setZero();
   }
-  /// Adds an impulse to the slot of a row.
-  void book(const auto& row, const Vec3d& impulse) {
+  /// Adds impulses to the slot of a row.
+  void book(const auto& row, const Vec3d& impulse, const Vec3d& squeeze) {
     Slot& slot = slot_of(row);
-    slot.impulse += impulse;
-    slot.along += slot.contact.normal * slot.contact.normal.dot(impulse);
+    slot.impulse += impulse + squeeze;
+    slot.along += slot.contact.normal * slot.contact.normal.dot(impulse) + squeeze;
   }
   /// The slot of a row, new or old, with the row's plane.
   Slot& slot_of(const auto& row) {

@@ -68,9 +68,10 @@ void share_squeeze(ObjectSolve<Real>& solve, Real dt) {
       if (moving.collider != k || moving.grip == 0) continue;
       const ContactRow<Real>& row = rows.all[moving.row];
       const Real squeeze = share * moving.grip;  // [N s]
-      const Vec3d impulse = (row.normal * squeeze).template cast<double>();
+      // Rows at the rim lean, and their normals would not cancel those of the other jaw.
+      const Vec3d impulse = jaw.press * static_cast<double>(squeeze);
       jaw.squeezed += impulse;
-      if (solve.log.wanted()) solve.log.add_impulse(rows.all, moving.row, impulse);
+      if (solve.log.wanted()) solve.log.add_squeeze(rows.all, moving.row, impulse);
       moving.grip =
           squeeze * moving.mobility * static_cast<Real>(settings_of(solve.cloths, row).friction);
     }

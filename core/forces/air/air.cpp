@@ -13,8 +13,8 @@ namespace {
 
 /// Mean wind and gusts.
 template <class Real>
-void sample_weather(const EnvironmentDef& environment, double time, const Vec3Array<Real>& x,
-                    Vec3Array<Real>& air) {
+void sample_weather(const EnvironmentDef& environment, double time, const Vec3d& ahead,
+                    const Vec3Array<Real>& x, Vec3Array<Real>& air) {
   const Vec3<Real> mean = environment.wind.cast<Real>();
   if (environment.gust_speed == 0) {
     std::fill(air.begin(), air.end(), mean);
@@ -22,7 +22,7 @@ void sample_weather(const EnvironmentDef& environment, double time, const Vec3Ar
   }
   assert(environment.gust_length > 0);
   const auto speed = static_cast<Real>(environment.gust_speed);
-  const Vec3d carried = (environment.wind + Vec3d(kDriftOfStillAir.data())) * time;
+  const Vec3d carried = (environment.wind + Vec3d(kDriftOfStillAir.data())) * time + ahead;
   SmoothNoise<Real> noise;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3d eddy = (x[i].template cast<double>() - carried) / environment.gust_length;
@@ -57,10 +57,10 @@ double air_damping_rate(const EnvironmentDef& environment, const FabricDef& fabr
 }
 
 template <class Real>
-std::size_t sample_air(const EnvironmentDef& environment, double time, const Vec3Array<Real>& x,
-                       Vec3Array<Real>& air) {
+std::size_t sample_air(const EnvironmentDef& environment, double time, const Vec3d& ahead,
+                       const Vec3Array<Real>& x, Vec3Array<Real>& air) {
   assert(air.size() == x.size());
-  sample_weather(environment, time, x, air);
+  sample_weather(environment, time, ahead, x, air);
   std::size_t evaluated = 0;
   for (const FanDef& fan : environment.fans) {
     if (fan.speed == 0) continue;
@@ -71,9 +71,9 @@ std::size_t sample_air(const EnvironmentDef& environment, double time, const Vec
   return evaluated;
 }
 
-template std::size_t sample_air(const EnvironmentDef&, double, const Vec3Array<float>&,
-                                Vec3Array<float>&);
-template std::size_t sample_air(const EnvironmentDef&, double, const Vec3Array<double>&,
-                                Vec3Array<double>&);
+template std::size_t sample_air(const EnvironmentDef&, double, const Vec3d&,
+                                const Vec3Array<float>&, Vec3Array<float>&);
+template std::size_t sample_air(const EnvironmentDef&, double, const Vec3d&,
+                                const Vec3Array<double>&, Vec3Array<double>&);
 
 }  // namespace weft

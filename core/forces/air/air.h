@@ -30,12 +30,14 @@ double air_damping_rate(const EnvironmentDef& environment, const FabricDef& fabr
 /// the mean wind carries along (frozen turbulence, Taylor 1938), so that it is smooth in time too,
 /// plus the jets of the fans.
 ///
-/// @param time  simulated time [s]
-/// @param x     positions [m]
-/// @param air   result, with the size of x
+/// @param time   simulated time [s]
+/// @param ahead  by how much the gusts are ahead of where this wind would have carried them in that
+///               time, because it was another one before [m]
+/// @param x      positions [m]
+/// @param air    result, with the size of x
 /// @returns number of evaluations of a fan's jet
 template <class Real>
-std::size_t sample_air(const EnvironmentDef& environment, double time, const Vec3Array<Real>& x,
-                       Vec3Array<Real>& air);
+std::size_t sample_air(const EnvironmentDef& environment, double time, const Vec3d& ahead,
+                       const Vec3Array<Real>& x, Vec3Array<Real>& air);
 
 }  // namespace weft

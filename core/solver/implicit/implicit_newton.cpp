@@ -160,6 +160,36 @@ void linearise(Step<Real>& step, Real progress) {
     if (!step.movable(i)) work.force[i].setZero();
 }
 
+/// Moves a part that nothing holds by what the linear solver left over of the sum of all forces:
+/// internal ones have no part in that, so it would be momentum out of nothing.
+template <class Real, class System>
+void keep_momentum(Step<Real>& step, std::size_t p, const System& system) {
+  ImplicitWorkspace<Real>& work = step.work;
+  const IndexRange& range = step.model.parts[p].particles;
+  Vec3d left = Vec3d::Zero();
+  SymmetricBlock<double> total{};
+  const auto add_to_diagonal = [&total](double value) {
+    for (double* number : {&total[0], &total[3], &total[5]}) *number += value;
+  };
+  for (Index k = range.first; k < range.end(); ++k) {
+    const auto i = static_cast<std::size_t>(k);
+    if (!step.movable(i)) return;
+    const std::array<std::size_t, 3> places = system.places(k - range.first);
+    for (std::size_t d = 0; d < 3; ++d)
+      left[static_cast<Eigen::Index>(d)] += static_cast<double>(work.residual[places[d]]);
+    add_to_diagonal(static_cast<double>(work.inertia[i]));
+    for (std::size_t e = 0; step.surroundings.air && e < total.size(); ++e)
+      total[e] += static_cast<double>(work.air_blocks[i][e]);
+  }
+  for (std::size_t h = 0; h < work.hand_count; ++h) {
+    if (work.hands[h].part == p) add_to_diagonal(static_cast<double>(work.hands[h].stiffness));
+  }
+  const Vec3<Real> shift = times(inverse_of(total), left).template cast<Real>();
+  if (!shift.allFinite()) return;
+  for (Index k = range.first; k < range.end(); ++k)
+    work.displacement[static_cast<std::size_t>(k)] += shift;
+}
+
 /// Newton step of a part. @returns whether it was found
 template <class Real>
 bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start) {
@@ -186,6 +216,7 @@ bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start
         step.profile[Stage::linear_systems].work += static_cast<std::size_t>(found.iterations);
         if (first) start = found.start;
         system.add(work.step.data(), work.displacement);
+        if (found.solved) keep_momentum(step, p, system);
         return found.solved;
       },
       work.systems[p]);

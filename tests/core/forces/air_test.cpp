@@ -44,7 +44,7 @@ Vec3Array<double> random_places(test::Random& random, int count) {
 Vec3Array<double> air_at(const EnvironmentDef& environment, double time,
                          const Vec3Array<double>& x) {
   Vec3Array<double> air(x.size());
-  sample_air(environment, time, x, air);
+  sample_air(environment, time, Vec3d::Zero(), x, air);
   return air;
 }
 
@@ -53,7 +53,7 @@ Vec3Array<double> air_at(const EnvironmentDef& environment, double time,
 double fastest_loss(const ClothModel<double>& model, const EnvironmentDef& environment) {
   const Vec3Array<double>& x = model.rest_positions;
   Vec3Array<double> wind(x.size());
-  sample_air(environment, 0, x, wind);
+  sample_air(environment, 0, Vec3d::Zero(), x, wind);
   Vec3Array<double> v(x.size(), Vec3d(0.1, 1, 0.9)), still(x.size(), Vec3d::Zero());
   double rate = 0;
   for (int round = 0; round < 200; ++round) {

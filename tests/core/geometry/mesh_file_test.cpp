@@ -1,7 +1,9 @@
 #include "core/geometry/mesh_file.h"
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 #include <unistd.h>
 
@@ -127,4 +129,59 @@ TEST_CASE("a name without a known ending is refused as `out`") {
       CHECK(error.field == "out");
     }
   }
+}
+
+namespace {
+
+/// A tube of n columns about the z axis, whose last column is the first one turned by a full turn,
+/// with uv, as an OBJ.
+std::string tube(int n, double last_turn) {
+  std::ostringstream text;
+  text.precision(17);
+  const auto vertex = [n](int ring, int column) { return ring * (n + 1) + column + 1; };
+  for (int ring = 0; ring < 4; ++ring) {
+    for (int column = 0; column <= n; ++column) {
+      const double turn = column == n ? last_turn : 2 * std::numbers::pi * column / n;
+      text << "v " << 1.3 + 0.05 * std::cos(turn) << " " << 0.05 * std::sin(turn) << " "
+           << 0.02 * ring << "\nvt " << 0.3 * column / n << " " << 0.02 * ring << "\n";
+    }
+  }
+  for (int ring = 0; ring < 3; ++ring) {
+    for (int column = 0; column < n; ++column) {
+      const int a = vertex(ring, column), b = a + 1, c = a + n + 1, d = c + 1;
+      for (const auto& t : {std::array{a, b, d}, std::array{a, d, c}}) {
+        text << "f";
+        for (const int i : t) text << " " << i << "/" << i;
+        text << "\n";
+      }
+    }
+  }
+  return text.str();
+}
+
+}  // namespace
+
+TEST_CASE("a seam that rounding has opened is closed, with the uv of both of its sides") {
+  constexpr int kColumns = 24;
+  for (const double turn : {2 * std::numbers::pi, 2 * std::numbers::pi + 1e-7, -1e-7}) {
+    const MeshFile file = read_mesh(tube(kColumns, turn), "tube.OBJ");
+    CHECK(file.mesh.positions.size() == 4 * kColumns);
+    CHECK(file.uv.size() == file.mesh.positions.size());
+    REQUIRE(file.corner_uv.size() == file.mesh.triangles.size());
+    double widest = 0;
+    for (const CornerUv& corners : file.corner_uv) {
+      for (std::size_t k = 0; k < 3; ++k)
+        widest = std::max(widest, std::abs(corners[k][0] - corners[(k + 1) % 3][0]));
+    }
+    CHECK(widest == Approx(0.3 / kColumns).epsilon(1e-4));
+  }
+  // An opening of a hundredth of an edge is one.
+  CHECK(read_mesh(tube(kColumns, 2 * std::numbers::pi - 2e-3), "tube.obj").mesh.positions.size() ==
+        4 * (kColumns + 1));
+}
+
+TEST_CASE("sheets that lie a ten thousandth of an edge above each other stay two") {
+  const std::string two =
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1e-4\nv 1 0 1e-4\nv 0 1 1e-4\nf 1 2 3\nf 4 5 6\n";
+  CHECK(read_mesh(two, "two.obj").mesh.positions.size() == 6);
 }

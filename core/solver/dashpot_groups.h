@@ -1,0 +1,50 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/cloth/cloth_model.h"
+#include "core/math/aligned_vector.h"
+
+// The stencils of damped bending in groups, laid out for vector code.
+
+namespace weft {
+
+/// Groups of stencils that have particles and the cloth's normal in common: both lines through a
+/// particle of a grid, the twist of a cell, all curvatures of a triangle. All groups of a family
+/// have equally many, eight of them side by side make a batch, and the last batch is padded with
+/// groups without viscosity.
+///
+/// The normal is that of e x f. The line e runs from the particle in slot 0 to that in slot 1, and
+/// f from slot 0 to 2 in a triangle, else from slot 2 to 3.
+template <class Real>
+struct DashpotFamily {
+  static constexpr std::size_t kLanes = 8;
+  static constexpr std::size_t kMostSlots = 64;
+
+  std::size_t slots = 0;       ///< particles of a group; one may be in several slots
+  std::size_t curvatures = 0;  ///< of a group, 1 to 3
+  bool of_triangles = false;
+  std::size_t groups = 0, batches = 0;
+  /// Four times the number of each particle in the model, by batch, slot and lane.
+  std::vector<std::uint32_t> places;
+  /// Of triangles by batch, curvature, slot and lane; of a grid by curvature and slot, as all of
+  /// its groups have the same.
+  AlignedVector<Real> weights;
+  AlignedVector<Real> viscosity;  ///< tau k, by batch, curvature and lane
+  /// Found by `aim_dashpots`, by batch, number and lane: e, f and the normal, three numbers each;
+  /// then by curvature how the normal's turning changes it, and its viscosity, 0 where cloth is
+  /// crumpled.
+  AlignedVector<Real> geometry;
+
+  static constexpr std::size_t kOfNormal = 9, kOfCurvature = 4;
+  std::size_t geometry_numbers() const { return kOfNormal + kOfCurvature * curvatures; }
+};
+
+/// Lists the damped stencils of a part; empty if it has none.
+template <class Real>
+std::vector<DashpotFamily<Real>> dashpot_families(const ClothModel<Real>& model,
+                                                  const ClothPart<Real>& part);
+
+}  // namespace weft
