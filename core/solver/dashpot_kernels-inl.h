@@ -58,7 +58,7 @@ struct DashpotLanes {
 
   /// Forces on the particles of each lane, slot by slot.
   struct Forces {
-    HWY_ALIGN Quad<Real> of[kLanes * Family::kMostSlots];
+    Quad<Real> of[kLanes * Family::kMostSlots];
 
     HWY_INLINE void set(const Triple<V>& force, std::size_t slot) {
       std::uint32_t at[kLanes];
