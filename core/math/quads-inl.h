@@ -73,10 +73,10 @@ HWY_INLINE Triple<hn::Vec<D>> gather_quads(D d, const Quad<Real>* quads,
 }
 
 /// Gives it to the first of these particles.
+/// @param numbers  of their quads
 template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE void scatter_quads(D d, const Triple<hn::Vec<D>>& a, Quad<Real>* quads,
+HWY_INLINE void scatter_quads(D d, const Triple<hn::Vec<D>>& a, Real* numbers,
                               const std::uint32_t* place, std::size_t count) {
-  Real* const numbers = reinterpret_cast<Real*>(quads);
 #if HWY_TARGET != HWY_SCALAR
   if constexpr (kTransposes<Real>) {
     const auto of_particle = transposed_back(d, a);

@@ -9,6 +9,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 
 #include <hwy/highway.h>
 
@@ -56,15 +57,24 @@ struct DashpotLanes {
     return gather_quads(D(), from, place + slot * kLanes);
   }
 
-  /// Forces on the particles of each lane, slot by slot.
+  /// Forces on the particles of each lane, slot by slot. They begin as whatever was there.
   struct Forces {
-    Quad<Real> of[kLanes * Family::kMostSlots];
+    HWY_ALIGN Real numbers[4 * kLanes * Family::kMostSlots];
 
+    static HWY_INLINE std::size_t at(std::size_t lane, std::size_t slot) {
+      return 4 * (lane * Family::kMostSlots + slot);
+    }
     HWY_INLINE void set(const Triple<V>& force, std::size_t slot) {
-      std::uint32_t at[kLanes];
+      std::uint32_t to[kLanes];
       for (std::size_t k = 0; k < hn::Lanes(D()); ++k)
-        at[k] = static_cast<std::uint32_t>(4 * (k * Family::kMostSlots + slot));
-      scatter_quads(D(), force, of, at, hn::Lanes(D()));
+        to[k] = static_cast<std::uint32_t>(at(k, slot));
+      scatter_quads(D(), force, numbers, to, hn::Lanes(D()));
+    }
+    HWY_INLINE Quad<Real> of(std::size_t lane, std::size_t slot) const {
+      Quad<Real> force;
+      std::memcpy(&force.lanes, numbers + at(lane, slot), sizeof force.lanes);
+      force.lanes[3] = 0;
+      return force;
     }
   };
 
@@ -76,7 +86,7 @@ struct DashpotLanes {
     for (std::size_t k = 0; k < hn::Lanes(D()); ++k) {
       for (std::size_t slot = 0; slot < slots; ++slot) {
         const std::uint32_t at = place[slot * kLanes + k];
-        if (is_in(at)) to[at / 4] += forces.of[k * Family::kMostSlots + slot];
+        if (is_in(at)) to[at / 4] += forces.of(k, slot);
       }
     }
   }

@@ -102,7 +102,7 @@ struct RowLanes {
     return gather_quads(d, quads, block.place[n].data() + k);
   }
   HWY_INLINE void store_of(const Triple<V>& a, Quad<Real>* quads, std::size_t n) const {
-    scatter_quads(d, a, quads, block.place[n].data() + k, block.count - k);
+    scatter_quads(d, a, reinterpret_cast<Real*>(quads), block.place[n].data() + k, block.count - k);
   }
   HWY_INLINE V load_of(const Real* values, std::size_t n) const {
     HWY_ALIGN Real of[kBatchRows];
