@@ -98,7 +98,8 @@ inline constexpr double kJawNearStep = 0.25;
 /// they press too hard for longer.
 inline constexpr double kJawYield = 0.02;
 
-/// Least force over which an excess counts as a fraction [N].
+/// Least force over which an excess counts as a fraction [N]. Larger: jaws of less force yield more
+/// slowly. At 0 those without force would divide by it.
 inline constexpr double kLeastGrip = 0.01;
 
 /// Jaws touch the cloth between them when their opening exceeds its thickness by no more than this

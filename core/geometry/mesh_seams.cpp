@@ -18,14 +18,9 @@ namespace {
 
 /// Edges with a triangle on one side only.
 std::vector<Edge> border_edges(const TriangleMesh& mesh) {
-  std::map<Edge, int> sides;
-  for (const Triangle& t : mesh.triangles) {
-    for (std::size_t k = 0; k < 3; ++k)
-      ++sides[{std::min(t[k], t[(k + 1) % 3]), std::max(t[k], t[(k + 1) % 3])}];
-  }
   std::vector<Edge> border;
-  for (const auto& [edge, count] : sides) {
-    if (count == 1) border.push_back(edge);
+  for (const MeshEdge& edge : edges_of(mesh)) {
+    if (edge.triangle[1] == kNone) border.push_back({edge.a, edge.b});
   }
   return border;
 }
