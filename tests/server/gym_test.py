@@ -1,7 +1,9 @@
 """The Gymnasium environment against the real server: by Gymnasium's own check where that is installed, by laws here."""
 
+import gc
 import subprocess
 import sys
+import threading
 import unittest
 from pathlib import Path
 
@@ -11,6 +13,7 @@ from foreign_client import Server, main
 CLIENT = Path(__file__).resolve().parents[2] / "proto/python"
 sys.path.insert(0, str(CLIENT))
 
+import weft  # noqa: E402
 from weft import gym  # noqa: E402
 from weft.gym import picture, spaces  # noqa: E402
 from weft.messages import Fabric  # noqa: E402
@@ -131,6 +134,122 @@ class GymTest(unittest.TestCase):
             self.env(actors=[gym.Gripper("hand")])
         with self.assertRaisesRegex(ValueError, "rgb_array"):
             self.env(render_mode="human")
+
+    def test_arguments_out_of_range_are_refused_by_the_constructor(self):
+        for wrong in ({"ticks": 0}, {"ticks": 100_001}, {"ticks": 1.5}, {"limit": 0}, {"size": (0, 80)}):
+            with self.assertRaisesRegex(ValueError, f"{next(iter(wrong))} is a whole number"):
+                self.env(**wrong)
+        for kind, wrong in ((gym.Gripper, {"opening": 1.01}), (gym.Gripper, {"opening": float("nan")}),
+                            (gym.Gripper, {"force": -1}), (gym.Gripper, {"speed": 0}), (gym.Gripper, {"reach": -1}),
+                            (gym.Hand, {"particle": -1}), (gym.Hand, {"radius": 101}), (gym.Hand, {"max_force": -1})):
+            with self.assertRaisesRegex(ValueError, f"{next(iter(wrong))} is a "):
+                kind(**wrong)
+        with self.assertRaisesRegex(ValueError, "81 particles, from 0, and no 81"):
+            self.env(actors=[gym.Hand(81)])
+
+    def test_the_server_takes_the_largest_and_the_least_arguments(self):
+        for actors in ([gym.Gripper(opening=1, force=1000, speed=20, reach=0), gym.Hand(80, 0, 100, 1e5, 1e6)],
+                       [gym.Gripper(opening=0, force=0, speed=0.001), gym.Hand(0, 0, 0, 0, 0)]):
+            env = self.env(actors=actors, ticks=1)
+            env.reset()
+            for _ in range(2):
+                env.step([1] * 8)
+            env.close()
+
+    def test_an_action_beyond_its_space_is_clipped_and_its_reward_is_of_what_was_done(self):
+        env = self.env(reward=lambda before, after, action: float(action.sum()), limit=100)
+        runs = []
+        for action in ([0, 1, -1, -1], [0, 1.01, -3, -1.2]):
+            env.reset()
+            runs.append([env.step(np.array(action, np.float32))[:2] for _ in range(5)])
+        for (seen, reward), (clipped, of_clipped) in zip(*runs):
+            self.assertTrue(same(seen, clipped))
+            self.assertEqual((reward, of_clipped), (-1, -1))
+        self.assertAlmostEqual(clipped["grippers"][0][1] - 1.05, 5 * 0.02, delta=1e-3)
+
+    def test_an_action_of_a_wrong_shape_or_not_finite_is_refused_and_moves_nothing(self):
+        env = self.env(actors=[gym.Gripper(), gym.Hand(80)], limit=100)
+        still, runs = np.zeros(8, np.float32), []
+        for wrong in ((), (np.full(8, np.nan), [0, np.inf, 0, 0, 0, 0, 0, 0], np.zeros(4), np.zeros(16),
+                           np.zeros((2, 4)), None, ["a"] * 8, [[0], [0, 1]])):
+            env.reset()
+            for action in wrong:
+                with self.assertRaisesRegex(ValueError, r"4 numbers from -1 to 1 for each actor, shape \(8,\)"):
+                    env.step(action)
+            seen, *_, info = env.step(still)
+            runs.append(seen)
+            self.assertEqual(info["tick"], 7)
+        self.assertTrue(same(*runs))
+
+    def test_what_the_server_refuses_of_an_action_is_told(self):
+        env = self.env(actors=[gym.Gripper(reach=600)])
+        env.reset()
+        env.step([1, 0, 0, 1])
+        with self.assertRaisesRegex(weft.CommandError, "position") as raised:
+            env.step([1, 0, 0, 1])
+        self.assertEqual(raised.exception.code, "out_of_range")
+        env.reset()
+        env.step([1, 0, 0, 1])
+
+    def other(self):
+        viewer = weft.open(self.server.websocket, name="other")
+        self.addCleanup(viewer.close)
+        return viewer
+
+    def test_a_room_that_another_viewer_sets_going_is_paused_again(self):
+        env, other = self.env(prepare=grasp), self.other()
+        first, _ = env.reset()
+        other.resume()
+        again, info = env.reset()
+        self.assertTrue(same(first, again))
+        other.resume()
+        _, _, _, _, after = env.step(CLOSED)
+        self.assertGreaterEqual(after["tick"], info["tick"] + 6)
+        self.assertTrue(other.query("state")["paused"])
+
+    def test_a_step_that_another_viewer_stops_goes_on_to_its_end(self):
+        env, other = self.env(ticks=3000), self.other()
+        env.reset()
+        seen = []
+        running = threading.Thread(target=lambda: seen.append(env.step(CLOSED)[4]["tick"]))
+        running.start()
+        while running.is_alive() and other.query("state")["tick"] < 10:
+            pass
+        other.pause()
+        running.join()
+        self.assertEqual(seen, [3001])
+
+    def test_after_another_viewers_load_a_reset_brings_the_scene_of_the_environment_back(self):
+        env, other = self.env(prepare=grasp), self.other()
+        first, _ = env.reset()
+        lifted = env.step(np.array([0, 1, 0, -1], np.float32))[0]
+        for _ in range(2):
+            other.load("flag")
+            with self.assertRaisesRegex(weft.WeftError, r"another viewer loaded .* reset\(\) loads"):
+                env.step(CLOSED)
+            again, _ = env.reset()
+            self.assertTrue(same(first, again))
+            self.assertTrue(same(lifted, env.step(np.array([0, 1, 0, -1], np.float32))[0]))
+
+    def test_a_hand_that_another_viewer_made_let_go_takes_hold_anew(self):
+        env, other = self.env(actors=[gym.Hand(80)], limit=100), self.other()
+        env.reset()
+        env.step(np.ones(4, np.float32))
+        other.reset()
+        self.assertEqual(other.query("grabs"), [])
+        env.step(np.ones(4, np.float32))
+        self.assertEqual(len(other.query("grabs")), 1)
+        other.reset()
+        env.reset()  # what holds no more needs not let go
+
+    def test_closing_while_a_hand_holds_says_nothing(self):
+        with self.assertNoLogs("asyncio", "WARNING"):
+            env = gym.ClothEnv(self.server.websocket, scene=SMALL, actors=[gym.Hand(80)])
+            env.reset()
+            env.step(np.ones(4, np.float32))
+            env.close()
+            del env  # with it goes its loop, which tells what it left undone
+            gc.collect()
 
     def test_a_picture_shows_the_cloth_and_needs_no_window(self):
         env = self.env(render_mode="rgb_array", size=(60, 80))

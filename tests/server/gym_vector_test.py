@@ -9,6 +9,7 @@ from gym_test import CLIENT, SMALL, draw_fabric, grasp
 
 sys.path.insert(0, str(CLIENT))
 
+import weft  # noqa: E402
 from weft import gym  # noqa: E402
 from weft.gym import spaces  # noqa: E402
 
@@ -70,6 +71,83 @@ class VectorTest(unittest.TestCase):
         envs.close()
         with_rooms = self.server.get("/api/v1/rooms")[2]
         self.assertNotIn(b"gym-", with_rooms)
+
+    def hall(self):
+        hall = weft.open(self.server.websocket)
+        self.addCleanup(hall.close)
+        return hall
+
+    def names(self):
+        return sorted(room["name"] for room in self.hall().list_rooms()["rooms"])
+
+    def test_two_share_a_server_and_each_closes_its_own_rooms(self):
+        still = np.zeros((COUNT, 4), np.float32)
+        self.hall().create_room("gym-1")  # a stranger's
+        one, two = self.many(), self.many()
+        self.assertEqual(self.names(), ["default", *(f"gym-{k}" for k in range(2 * COUNT + 1))])
+        self.assertTrue(np.array_equal(one.reset(seed=1)[0]["positions"], two.reset(seed=1)[0]["positions"]))
+        two.close()
+        self.assertEqual(self.names(), ["default", *(f"gym-{k}" for k in range(COUNT + 1))])
+        self.assertEqual(one.step(still)[4]["tick"].tolist(), [7] * COUNT)
+        one.close()
+        self.assertEqual(self.names(), ["default", "gym-1"])
+
+    def test_a_constructor_that_fails_leaves_the_rooms_of_others_and_none_of_its_own(self):
+        async def fail(cloth):
+            raise KeyError("no grasp")
+
+        self.server.stop()
+        self.server = Server("--rooms", str(2 * COUNT))
+        one = self.many()
+        one.reset()
+        before = self.names()
+        for options, error, what in (({}, weft.CommandError, "close one that is no longer used"),
+                                     ({"prepare": fail}, KeyError, "no grasp"),
+                                     ({"rooms": "x" * 31}, weft.CommandError, "name must have")):
+            with self.assertRaisesRegex(error, what):
+                self.many(**options)
+            self.assertEqual(self.names(), before)
+        one.step(np.zeros((COUNT, 4), np.float32))
+
+    def test_a_name_that_another_took_after_its_room_was_closed_is_not_closed(self):
+        envs, hall = self.many(), self.hall()
+        hall.close_room("gym-1")
+        hall.create_room("gym-1")
+        self.assertTrue(envs._runner._run(self.lost(envs._rooms["gym-1"])))
+        envs.close()
+        self.assertEqual(self.names(), ["default", "gym-1"])
+
+    @staticmethod
+    async def lost(client):
+        await client._reader
+        return client.welcome is None
+
+    def test_wrong_actions_and_arguments_are_refused_and_move_none(self):
+        envs = self.many()
+        envs.reset()
+        one_nan = np.zeros((COUNT, 4))
+        one_nan[1, 2] = np.nan
+        for wrong in (one_nan, np.zeros((COUNT, 8)), np.zeros((COUNT, 3)), np.zeros((2, 4)), np.zeros(4 * COUNT), None):
+            with self.assertRaisesRegex(ValueError, rf"shape \({COUNT}, 4\)"):
+                envs.step(wrong)
+        self.assertEqual(envs.step(np.full((COUNT, 4), 1.5))[4]["tick"].tolist(), [7] * COUNT)
+        for name, wrong in (("ticks", 0), ("limit", 0)):
+            with self.assertRaisesRegex(ValueError, f"{name} is a whole number"):
+                self.many(**{name: wrong})
+        with self.assertRaisesRegex(ValueError, "num_envs is a whole number"):
+            gym.VectorClothEnv(self.server.websocket, 0, scene=SMALL)
+
+    def test_rooms_that_another_viewer_sets_going_or_loads_are_brought_back(self):
+        envs = self.many(prepare=grasp)
+        first, _ = envs.reset()
+        for k in (0, 2):
+            with weft.open(self.server.websocket + f"/gym-{k}") as other:
+                other.load("flag")
+                other.resume()
+            again, info = envs.reset()
+            self.assertEqual(info["tick"].tolist(), [61] * COUNT)
+            for name, values in first.items():
+                self.assertTrue(np.array_equal(again[name], values), name)
 
 
 if __name__ == "__main__":

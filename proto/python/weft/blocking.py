@@ -50,7 +50,8 @@ class SyncDrag:
         return self.start()
 
     def __exit__(self, *error: object) -> None:
-        self._owner._run(self._drag.__aexit__(*error))
+        if not self._owner._loop.is_closed():
+            self._owner._run(self._drag.__aexit__(*error))
 
 
 class SyncClient(BlockingCommands):

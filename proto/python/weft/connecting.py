@@ -11,7 +11,7 @@ from . import packages
 from .address import refusal_of, socket_address, token_of
 from .client import Client
 from .errors import ConnectionLost, ProtocolError
-from .timeouts import CALL_SECONDS, REFUSAL_SECONDS
+from .timeouts import CALL_SECONDS, GOODBYE_SECONDS, REFUSAL_SECONDS
 
 SUBPROTOCOL = "weft.v1"
 MOST_MESSAGE_BYTES = 256 * 2**20
@@ -32,6 +32,8 @@ class Connecting:
         if packages.websockets is None:
             raise ImportError("no package `websockets` for this Python: Debian has it as python3-websockets, "
                               "for /usr/bin/python3")
+        now = asyncio.get_running_loop().time
+        begin = now()
         try:
             socket = await packages.websockets.connect(
                 self._url,
@@ -39,34 +41,47 @@ class Connecting:
                 compression=None,
                 max_size=MOST_MESSAGE_BYTES,
                 open_timeout=self._timeout,
-                close_timeout=self._timeout,
+                close_timeout=GOODBYE_SECONDS,  # it may not answer that either
             )
         except packages.websockets.InvalidHandshake as error:
-            why = await asyncio.to_thread(refusal_of, self._url, REFUSAL_SECONDS)
+            left = REFUSAL_SECONDS if self._timeout is None else max(0.0, begin + self._timeout - now())
+            why = await asyncio.to_thread(refusal_of, self._url, min(left, REFUSAL_SECONDS))
             raise ConnectionLost(1006, f"no connection to {self._url}: {why or error}") from error
-        except (OSError, asyncio.TimeoutError) as error:
-            raise ConnectionLost(1006, f"no connection to {self._url}: {error}") from error
+        except (OSError, asyncio.TimeoutError) as error:  # that of `open_timeout` has no text
+            why = str(error) or f"no answer within {self._timeout:g} s"
+            raise ConnectionLost(1006, f"no connection to {self._url}: {why}") from error
         if socket.subprotocol != SUBPROTOCOL:
             await socket.close(4002)
             raise ProtocolError(f"the server does not speak {SUBPROTOCOL}")
         if self._token:  # where one is asked for, nothing comes before it
             await socket.send(json.dumps({"op": "hello", "token": self._token}))
+        socket.close_timeout = self._timeout
         return socket
 
     async def _connect(self) -> Client:
+        begin = asyncio.get_running_loop().time()
         socket = await self._dial()
         self._client = Client(socket, self._dial, self._hello, self._reconnect, self._call_timeout)
+        bound = asyncio.timeout_at(None if self._timeout is None else begin + self._timeout)
         try:
             try:
-                await asyncio.wait_for(self._client._ready(), self._timeout)
-            except asyncio.TimeoutError as error:
-                raise ConnectionLost(1006, "the server does not begin") from error
-            if any(self._hello.values()):
-                await self._client.hello(**self._hello)
+                async with bound:
+                    await self._begin(self._client)
+            except TimeoutError as error:
+                if not bound.expired():
+                    raise
+                why = f"the server does not begin within {self._timeout:g} s"
+                raise ConnectionLost(1006, f"no connection to {self._url}: {why}") from error
         except BaseException:
+            socket.close_timeout = GOODBYE_SECONDS
             await self._client.close()
             raise
         return self._client
+
+    async def _begin(self, client: Client) -> None:
+        await client._ready()
+        if any(self._hello.values()):
+            await client.hello(**self._hello)
 
     def __await__(self) -> Generator[Any, None, Client]:
         return self._connect().__await__()

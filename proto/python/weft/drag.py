@@ -42,6 +42,7 @@ class Drag:
         if self._target is None:
             self._target = result.get("target")
         self._repeater = asyncio.create_task(self._repeat())
+        self._client._keep(self._repeater)
         return self
 
     async def move(self, target: Iterable[float]) -> DragResult:

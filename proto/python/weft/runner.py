@@ -8,6 +8,7 @@ from collections.abc import Coroutine
 from typing import Any, TypeVar
 
 from .client import Client
+from .errors import ConnectionLost
 
 Result = TypeVar("Result")
 
@@ -37,7 +38,15 @@ class Runner:
             self._stop()
 
     def _run(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
-        return asyncio.run_coroutine_threadsafe(coroutine, self._loop).result()
+        if self._loop.is_closed():
+            coroutine.close()
+            raise ConnectionLost(1000, "this client was closed")
+        future = asyncio.run_coroutine_threadsafe(coroutine, self._loop)
+        try:
+            return future.result()
+        except BaseException:
+            future.cancel()  # an interrupted caller no longer wants it
+            raise
 
     def _stop(self) -> None:
         self._loop.call_soon_threadsafe(self._loop.stop)

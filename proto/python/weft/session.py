@@ -45,6 +45,7 @@ class Session:
         self._waiting: dict[int, asyncio.Future[Any]] = {}
         self._transfers: dict[int, tuple[asyncio.Future[Any], dict[str, Any]]] = {}
         self._listeners: dict[str, list[Callable[[Any], None]]] = {}
+        self._kept: set[asyncio.Task[None]] = set()  # tasks of hands
         self._next_id = self._next_drag = 1
         self._changed = asyncio.Condition()
         self._lost: WeftError | None = None  # why there is no connection now
@@ -79,8 +80,16 @@ class Session:
         self._reconnect = False
         if self._redial is not None:
             self._redial.cancel()
+        for task in self._kept:
+            task.cancel()
+        await asyncio.gather(*self._kept, return_exceptions=True)  # none is left when the loop ends
         await self._socket.close()
         await self._reader
+
+    def _keep(self, task: asyncio.Task[None]) -> None:
+        """Ends a task with the client, if it has not ended before."""
+        self._kept.add(task)
+        task.add_done_callback(self._kept.discard)
 
     async def request(self, op: str, *, timeout: float | None = CLIENTS, **fields: Any) -> Any:
         """Sends any command and waits for its result."""

@@ -8,11 +8,13 @@ from typing import Any
 from ..connecting import connect
 from ..runner import Runner
 from .actors import Actor, Gripper
-from .arena import Arena, Preparation, action_space, observation_space
+from .arena import MOST_TICKS, Arena, Preparation, action_space, observation_space
+from .checks import actions, whole
 from .picture import Picture
 from .spaces import Env
 
-# Of what was observed before and after a step, and the action between: the reward.
+MOST_PIXELS = 10_000  # of a picture, along each side
+# Of what was observed before and after a step, and the action between, as it was carried out: the reward.
 Reward = Callable[[Mapping[str, Any], Mapping[str, Any], Any], float]
 # Draws the settings of an episode, those of `Client.set`, from a source of chance.
 Randomise = Callable[[Any], Mapping[str, Any]]
@@ -25,11 +27,16 @@ def lifted(before: Mapping[str, Any], after: Mapping[str, Any], action: Any) -> 
 
 class ClothEnv(Env):
     """One room of a server. Its actions move grippers and hands, four numbers from -1 to 1 each; it observes positions
-    and velocities of the vertices and the state of all grippers with the force and torque that they feel.
+    and velocities of the vertices and the state of all grippers with the force and torque that they feel. Numbers of an
+    action beyond -1 and 1 are clipped; a wrong shape and what is not finite raise ValueError before anything is sent.
 
     The room is this environment's alone: it is paused, and loses its scene. `reset(seed, options)` goes back to the
     start; `options` may have `settings`, those of `Client.set`, which count above what `randomise` draws. An episode is
     cut after `limit` steps; `finished` of an observation ends it before.
+
+    Where another viewer sets the room going, `reset` and `step` pause it and go on; ticks that passed meanwhile show in
+    the `tick` of `info`. Where one loads another scene, `step` raises WeftError and `reset` loads that of the
+    environment again. `step` raises CommandError if the server refuses what an action asks for.
     """
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 10}
@@ -42,22 +49,24 @@ class ClothEnv(Env):
     ):  # fmt: skip
         if render_mode not in (None, "rgb_array"):
             raise ValueError(f"render_mode {render_mode!r}: there is rgb_array alone")
-        self.render_mode, self.limit = render_mode, limit
+        ticks, self.limit = whole("ticks", ticks, 1, MOST_TICKS), whole("limit", limit, 1)
+        rows, columns = (whole("size", side, 1, MOST_PIXELS) for side in size)
+        actors = [Gripper()] if actors is None else list(actors)
+        self.render_mode = render_mode
         self._reward, self._finished, self._randomise = reward, finished, randomise
         self._steps, self._seen = 0, {}
         self._runner = Runner()
         self._runner._client = self._runner._start(connect(url, name="gym")._connect())
         try:
-            actors = [Gripper()] if actors is None else actors
-            self._arena = Arena(self._runner._client, actors, ticks)
-            self._runner._run(self._arena.set_up(scene, prepare))
+            self._arena = Arena(self._runner._client, actors, ticks, scene, prepare)
+            self._runner._run(self._arena.set_up())
             found = self._runner._run(self._arena.begin({}))
         except BaseException:
             self.close()
             raise
         self.action_space = action_space(actors)
         self.observation_space = observation_space(len(found["positions"]), len(found["grippers"]))
-        self._picture = Picture(self._arena.client.mesh, self._arena.client.mesh_data, size)
+        self._picture = Picture(self._arena.client.mesh, self._arena.client.mesh_data, (rows, columns))
 
     def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, dict[str, Any]]:
         """Back to the start, with settings drawn from the seed."""
@@ -68,6 +77,7 @@ class ClothEnv(Env):
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, dict[str, Any]]:
         """Some ticks with an action: observation, reward, finished, cut, and what else there is to know."""
+        action = actions(action, self.action_space.shape)
         before, self._seen = self._seen, self._runner._run(self._arena.step(action))
         self._steps += 1
         finished = self._finished is not None and bool(self._finished(self._seen))

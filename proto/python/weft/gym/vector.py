@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import Awaitable, Callable, Mapping, Sequence
-from typing import Any
+import itertools
+from collections.abc import Awaitable, Callable, Iterable, Mapping, Sequence
+from typing import Any, TypeVar
 from urllib.parse import urlsplit
 
 import numpy as np
@@ -12,13 +13,31 @@ import numpy as np
 from ..address import socket_address, token_of
 from ..client import Client
 from ..connecting import connect
+from ..errors import CommandError, ConnectionLost
 from ..runner import Runner
 from .actors import Actor, Gripper
-from .arena import Arena, Preparation, action_space, observation_space
+from .arena import MOST_TICKS, Arena, Preparation, action_space, observation_space
+from .checks import actions as checked
+from .checks import whole
 from .env import Randomise, Reward, lifted
 from .spaces import Box, Dict, VectorEnv, gymnasium
 
 Observations = dict[str, Any]
+Value = TypeVar("Value")
+
+
+async def all_of(calls: Iterable[Awaitable[Value]]) -> list[Value]:
+    """What all of them give, once all are done. Only then a failure is raised, so that none goes on behind it."""
+    values: list[Value] = []
+    failure: BaseException | None = None
+    for value in await asyncio.gather(*calls, return_exceptions=True):
+        if isinstance(value, BaseException):
+            failure = failure or value
+        else:
+            values.append(value)
+    if failure is not None:
+        raise failure
+    return values
 
 
 class VectorClothEnv(VectorEnv):
@@ -26,7 +45,11 @@ class VectorClothEnv(VectorEnv):
     all begin with the same bits. Each step all rooms run their ticks at once; the answer comes when all are done.
 
     An environment whose episode ended begins anew in the next step, whose action it ignores (Gymnasium's
-    `NEXT_STEP`). `close` closes the rooms.
+    `NEXT_STEP`).
+
+    The rooms have the first free names of `rooms`-0, `rooms`-1 and so on, so that many of these share a server that has
+    room for all (`weft serve --rooms`). `close` closes those that were made here, and so does a constructor that fails;
+    rooms of others are left alone.
     """
 
     metadata: dict[str, Any] = {"render_modes": [], "autoreset_mode": "NextStep"}
@@ -37,9 +60,11 @@ class VectorClothEnv(VectorEnv):
         reward: Reward = lifted, finished: Callable[[Mapping[str, Any]], bool] | None = None,
         randomise: Randomise | None = None, prepare: Preparation | None = None, rooms: str = "gym",
     ):  # fmt: skip
-        self.num_envs, self.limit = num_envs, limit
+        self.num_envs, self.limit = whole("num_envs", num_envs, 1), whole("limit", limit, 1)
+        ticks = whole("ticks", ticks, 1, MOST_TICKS)
         self._url, self._reward, self._finished, self._randomise = url, reward, finished, randomise
-        self._names = [f"{rooms}-{k}" for k in range(num_envs)]
+        self._names = (f"{rooms}-{k}" for k in itertools.count())
+        self._rooms: dict[str, Client | None] = {}  # that were made here, and who is in them
         self._chances = [np.random.default_rng() for _ in range(num_envs)]
         self._arenas: list[Arena] = []
         self._steps, self._over = np.zeros(num_envs, int), np.zeros(num_envs, bool)
@@ -67,26 +92,35 @@ class VectorClothEnv(VectorEnv):
     async def _open(
         self, scene: Any, actors: Callable[[], Sequence[Actor]], ticks: int, prepare: Preparation | None
     ) -> None:
-        await self._hall.create_room(self._names[0], paused=True)
-        first = Arena(await self._join(self._names[0]), actors(), ticks)
-        await first.set_up(scene, prepare)
-        for name in self._names[1:]:
-            await first.client.fork(name, paused=True)
-        clients = await asyncio.gather(*map(self._join, self._names[1:]))
-        self._arenas = [first, *(Arena(client, actors(), ticks) for client in clients)]
-        await asyncio.gather(*(arena.set_up(None, None) for arena in self._arenas[1:]))  # forks begin without saves
-        self._seen = list(await asyncio.gather(*(arena.begin({}) for arena in self._arenas)))
+        async def joined(name: str) -> Arena:
+            return Arena(await self._join(name), actors(), ticks, scene, prepare)
+
+        first = await joined(await self._make(lambda name: self._hall.create_room(name, paused=True)))
+        await first.set_up()
+        forks = [await self._make(lambda name: first.client.fork(name, paused=True)) for _ in range(1, self.num_envs)]
+        self._arenas = [first, *await all_of(map(joined, forks))]
+        await all_of(arena.set_up(forked=True) for arena in self._arenas[1:])  # forks begin without saves
+        self._seen = await all_of(arena.begin({}) for arena in self._arenas)
+
+    async def _make(self, make: Callable[[str], Awaitable[Any]]) -> str:
+        """The name of a room that this makes, the next one that is free."""
+        for name in self._names:
+            try:
+                await make(name)
+            except CommandError as refusal:
+                if refusal.code == "room_exists":
+                    continue
+                raise
+            self._rooms[name] = None
+            return name
+        raise AssertionError("names do not end")
 
     async def _join(self, room: str) -> Client:
         parts = urlsplit(socket_address(self._url))
         address = parts._replace(path=f"/ws/{room}").geturl()
-        return await connect(address, name="gym", token=token_of(self._url))._connect()
-
-    def _at_once(self, calls: Sequence[Awaitable[Observations]]) -> list[Observations]:
-        async def together() -> list[Observations]:
-            return list(await asyncio.gather(*calls))
-
-        return self._runner._run(together())
+        client = await connect(address, name="gym", token=token_of(self._url))._connect()
+        self._rooms[room] = client
+        return client
 
     def _begin(self, k: int, options: Mapping[str, Any]) -> Awaitable[Observations]:
         drawn = self._randomise(self._chances[k]) if self._randomise else {}
@@ -104,14 +138,16 @@ class VectorClothEnv(VectorEnv):
         seeds = [seed + k for k in range(self.num_envs)] if isinstance(seed, int) else seed
         for k, own in enumerate(seeds or ()):
             self._chances[k] = np.random.default_rng(own)
-        self._seen = self._at_once([self._begin(k, options or {}) for k in range(self.num_envs)])
+        begun = [self._begin(k, options or {}) for k in range(self.num_envs)]
+        self._seen = self._runner._run(all_of(begun))
         return self._told(), {"tick": self._ticks()}
 
     def step(self, actions: Any) -> tuple[Observations, Any, Any, Any, dict[str, Any]]:
         """One step of all: observations, rewards, which finished, which were cut, and what else there is to know."""
+        actions = checked(actions, self.action_space.shape)
         begun, before = self._over.copy(), self._seen
         calls = [self._begin(k, {}) if begun[k] else self._arenas[k].step(actions[k]) for k in range(self.num_envs)]
-        self._seen = self._at_once(calls)
+        self._seen = self._runner._run(all_of(calls))
         self._steps += ~begun
         rewards, finished = np.zeros(self.num_envs), np.zeros(self.num_envs, bool)
         for k in np.flatnonzero(~begun):
@@ -125,14 +161,26 @@ class VectorClothEnv(VectorEnv):
         return np.array([arena.frame.tick if arena.frame else 0 for arena in self._arenas])
 
     def close(self, **options: Any) -> None:
-        """Closes the rooms and leaves the server."""
-        if not self._runner._loop.is_closed():
-            self._runner._run(self._leave())
-            self._runner.close()
+        """Closes the rooms that were made here and leaves the server."""
+        runner = getattr(self, "_runner", None)  # Gymnasium also closes what refused its arguments
+        if runner is None or runner._loop.is_closed():
+            return
+        try:
+            runner._run(self._leave())
+        finally:
+            runner.close()
 
     async def _leave(self) -> None:
-        await asyncio.gather(*(arena.client.close() for arena in self._arenas))
-        there = {room["name"] for room in (await self._hall.list_rooms())["rooms"]}
-        for name in self._names:
-            if name in there:
-                await self._hall.close_room(name)
+        # Whoever is no longer connected may have lost its room, and another one may have that name since.
+        own = [name for name, client in self._rooms.items() if client is None or client.welcome is not None]
+        await all_of(client.close() for client in self._rooms.values() if client is not None)
+        await all_of(map(self._close_room, own))
+
+    async def _close_room(self, name: str) -> None:
+        try:
+            await self._hall.close_room(name)
+        except ConnectionLost:
+            pass  # and with it the server, or it closes the room later by itself
+        except CommandError as refusal:
+            if refusal.code != "unknown_room":
+                raise
