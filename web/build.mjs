@@ -1,5 +1,5 @@
-// Bundles src/main.ts, styles/styles.css and styles/rooms.css with all they import, and copies the files of static/
-// and the pictures of scenes beside them.
+// Bundles src/main.ts and the styles with all they import, and copies the files of static/ and the pictures of scenes
+// beside them.
 // usage: node build.mjs OUTPUT_DIRECTORY DEPENDENCY_FILE
 import { build } from "esbuild";
 import { cp, mkdir, readdir, readFile, rm, writeFile } from "node:fs/promises";
@@ -19,6 +19,10 @@ await rm(output, { recursive: true, force: true });
 await mkdir(output, { recursive: true });
 await cp(static_files, output, { recursive: true });
 
+// Indentation is for those who read the source.
+const document = join(output, "index.html");
+await writeFile(document, (await readFile(document, "utf8")).replace(/\n\s+/g, "\n"));
+
 // The page asks for a picture only if there is one.
 const pictures = (await readdir(scene_pictures)).filter((name) => name.endsWith(".jpg"));
 await cp(scene_pictures, join(output, "scenes"), { recursive: true });
@@ -27,9 +31,12 @@ await writeFile(
   JSON.stringify(pictures.map((name) => parse(name).name)),
 );
 
+// The first is part of the first load; each other one comes with what it is for.
+const sheets = ["styles", "people", "rooms", "scenes"];
+
 const { metafile } = await build({
   absWorkingDir: here,
-  entryPoints: ["src/main.ts", "src/wire/frame_worker.ts", "styles/styles.css", "styles/rooms.css"],
+  entryPoints: ["src/main.ts", "src/wire/frame_worker.ts", ...sheets.map((name) => `styles/${name}.css`)],
   entryNames: "[name]",
   outdir: output,
   bundle: true,

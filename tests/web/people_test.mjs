@@ -70,6 +70,22 @@ test('an operator says who holds by the list of people, and the page of who may 
     assert.ok(!(await ben.getByRole('button', { name: 'Others watch' }).isVisible()));
   }));
 
+test('an operator that may not hold gives itself a hand by one click', bounded, () =>
+  with_two(async (ada) => {
+    const offer = ada.getByRole('button', { name: 'You look. Give yourself a hand' });
+    await open_list(ada);
+    assert.ok(!(await offer.isVisible()));
+    const own = ada.getByRole('checkbox', { name: 'Ada may hold' });
+    await own.uncheck();
+    await close_list(ada);
+    await until(() => offer.isVisible(), 'Ada is told what helps');
+    assert.ok(!(await ada.getByText('an operator can give you a hand').isVisible()), 'and not to ask somebody else');
+    await offer.click();
+    await until(async () => !(await offer.isVisible()), 'it goes with the hand');
+    await open_list(ada);
+    assert.ok(await own.isChecked());
+  }));
+
 test("another's cursor is drawn on the cloth with a name", bounded, () =>
   with_two(async (ada, ben) => {
     await point_at_cloth(ben);

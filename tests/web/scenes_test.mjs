@@ -78,6 +78,26 @@ test('typing filters the scenes, arrows go through them, and Enter loads one', b
   }),
 );
 
+test('what a choice does to others is read above the search, on wide screens and on a phone', bounded, () =>
+  with_page({ paused: true }, async (page) => {
+    for (const [width, height] of [[1280, 800], [390, 844], [844, 390]]) {
+      await page.setViewportSize({ width, height });
+      await page.locator('#view').focus();
+      await page.keyboard.press('l');
+      await until(() => page.locator('#scene-list img').count(), 'pictures are there');
+      const words = page.getByText('What you choose is loaded for everybody who looks at this cloth.');
+      assert.equal(await page.locator('#scenes').evaluate((dialog) => dialog.scrollTop), 0);
+      const clip = await words.boundingBox();
+      const shown = await page.screenshot({ clip });
+      const search = page.locator('#scene-search');
+      await search.evaluate((field) => (field.style.display = 'none'));
+      assert.ok(shown.equals(await page.screenshot({ clip })), `nothing lies over them at ${width} x ${height}`);
+      await search.evaluate((field) => (field.style.display = ''));
+      await page.keyboard.press('Escape');
+    }
+  }),
+);
+
 /** Bytes of a file as the server sends it to who takes gzip alone. */
 async function gzipped(url) {
   const [answer] = await once(get(url, { headers: { 'accept-encoding': 'gzip' } }), 'response');

@@ -8,6 +8,7 @@ import { import_page_module } from './support/page_module.mjs';
 // What the page says of what others do, and of what happens to the own hand.
 
 const { loss_text, notice_text } = await import_page_module('panel/events');
+const { named } = await import_page_module('view/words');
 
 const present = { own: 1, scene: 'Flag', name: (id) => ({ 1: 'Ada', 2: 'ben' })[id] };
 const says = (code, viewer, level = 'info') =>
@@ -15,10 +16,10 @@ const says = (code, viewer, level = 'info') =>
 
 test('a sentence names who reset or loaded, also to the one who did', () => {
   assert.equal(says('reset', 1), 'You reset the scene');
-  assert.equal(says('reset', 2), 'Ben reset the scene');
+  assert.equal(says('reset', 2), `${named('Ben')} reset the scene`);
   assert.equal(says('reset', 7), 'Somebody reset the scene');
   assert.equal(says('reset', undefined), 'Somebody reset the scene');
-  assert.equal(says('loaded', 2), 'Ben chose the scene “Flag”');
+  assert.equal(says('loaded', 2), `${named('Ben')} chose the scene “Flag”`);
 });
 
 test('only what nothing else shows is told, and each loss of the hand once', () => {

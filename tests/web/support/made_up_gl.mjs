@@ -66,14 +66,14 @@ export function made_up_canvas(alive, made = {}) {
 }
 
 const made_up_label = () =>
-  ({ style: { setProperty() {} }, toggleAttribute() {}, remove() {}, textContent: '', offsetWidth: 20 });
+  ({ style: { setProperty() {} }, toggleAttribute() {}, remove() {}, replaceChildren() {}, offsetWidth: 20 });
 
 /** Stands in for what the renderer and labels ask of a browser. */
 export function make_up_browser() {
   globalThis.self ??= globalThis;
   globalThis.window ??= { devicePixelRatio: 1 };
   globalThis.document ??= {
-    createElement: (kind) => (kind === 'span' ? made_up_label() : made_up_canvas({})),
+    createElement: (kind) => (['span', 'bdi'].includes(kind) ? made_up_label() : made_up_canvas({})),
     createElementNS: () => made_up_canvas({}),
   };
 }

@@ -1,4 +1,5 @@
 import type { Notice } from '../../../proto/js/messages.js';
+import { named } from '../view/words.js';
 
 /** What a sentence may name. */
 export interface Present {
@@ -42,6 +43,6 @@ export function loss_text(reason: string): string | null {
 
 function who(viewer: number | undefined, { own, name }: Present): string {
   if (viewer === own) return 'You';
-  const known = (viewer !== undefined && name(viewer)) || 'Somebody';
-  return known[0].toUpperCase() + known.slice(1);
+  const known = viewer !== undefined && name(viewer);
+  return known ? named(known[0].toUpperCase() + known.slice(1)) : 'Somebody';
 }

@@ -1,13 +1,14 @@
 import type { WeftClient } from '../../../proto/js/index.js';
 import { tell_refusal } from '../wire/connection.js';
+import { without_unseen } from '../wire/names.js';
 import { element } from './element.js';
 import { remember, remembered } from './preferences.js';
 
 const LONGEST_NAME = 32; // [characters]
 
 function cleaned(name: string): string {
-  const printable = name.replace(/\p{Cc}/gu, '').trim();
-  return [...printable].slice(0, LONGEST_NAME).join('').trim();
+  const seen = without_unseen(name, '').trim();
+  return [...seen].slice(0, LONGEST_NAME).join('').trim();
 }
 
 /** The viewer's name as `?name=` in the page's address says, else as last typed here; may be empty. */

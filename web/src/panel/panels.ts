@@ -1,4 +1,5 @@
 import type { Roster, State } from '../../../proto/js/messages.js';
+import { name_element, write_words } from '../view/words.js';
 import type { Refusal } from '../wire/connection.js';
 import { Disclosure } from './disclosure.js';
 import { element } from './element.js';
@@ -130,7 +131,7 @@ export class Panels {
     const own_first = [...viewers].sort((a, b) => Number(b.id === own) - Number(a.id === own));
     const items = own_first.slice(0, MOST_NAMES).map(({ id, name, color }) => {
       const item = document.createElement('li');
-      item.append(span('swatch', ''), id === own ? own_entry(name) : span('viewer-name', name));
+      item.append(span('swatch', ''), id === own ? own_entry(name) : name_element(name));
       item.style.setProperty('--color', color);
       return item;
     });
@@ -144,7 +145,7 @@ export class Panels {
 
   tell(message: string): void {
     const toast = element('toast');
-    toast.textContent = message;
+    write_words(toast, message);
     toast.hidden = false;
     window.clearTimeout(this.toast_timer);
     this.toast_timer = window.setTimeout(() => (toast.hidden = true), TOAST_TIME);
@@ -156,7 +157,7 @@ function own_entry(name: string): HTMLElement {
   const entry = document.createElement('button');
   entry.type = 'button';
   entry.title = 'Change your name';
-  entry.append(span('viewer-name', name), span('', ' (you)'));
+  entry.append(name_element(name), span('you', ' (you)'));
   return entry;
 }
 

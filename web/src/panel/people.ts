@@ -1,5 +1,6 @@
 import type { WeftClient } from '../../../proto/js/index.js';
 import type { State, Viewer } from '../../../proto/js/messages.js';
+import { named, write_words } from '../view/words.js';
 import type { Company } from '../wire/company.js';
 import { tell_refusal } from '../wire/connection.js';
 import { link_with } from '../wire/own_address.js';
@@ -39,6 +40,7 @@ export class PeoplePanel {
       if (target instanceof Element && target.closest('button')) void this.open();
     });
     element('following').addEventListener('click', () => this.company.leave());
+    element('take-hand').addEventListener('click', () => tell_refusal(client.giveHand(client.viewer), tell));
   }
 
   /** Something about the people has changed. */
@@ -46,8 +48,10 @@ export class PeoplePanel {
     const own = this.viewers.find(({ id }) => id === this.client.viewer);
     const followed = this.viewers.find(({ id }) => id === this.company.follows);
     element('following').hidden = !followed;
-    element('following').textContent = followed ? `You see what ${followed.name} sees. Stop` : '';
-    element('only-looks').hidden = own?.hand !== false;
+    write_words(element('following'), followed ? `You see what ${named(followed.name)} sees. Stop` : '');
+    const looks = own?.hand === false;
+    element('only-looks').hidden = !looks || own.role !== 'viewer';
+    element('take-hand').hidden = !looks || own.role === 'viewer';
     if (this.dialog.open) this.list?.show(this.people());
   }
 
@@ -58,7 +62,8 @@ export class PeoplePanel {
 
   /** The list is no part of the first load. */
   private async open(): Promise<void> {
-    const { PeopleList } = await import('./people_list.js');
+    const { PeopleList, styles } = await import('./people_list.js');
+    await styles();
     const attempt = (answer: Promise<unknown>) => tell_refusal(answer, this.tell);
     this.list ??= new PeopleList(element('people'), this.client, { attempt, link_with });
     this.list.show(this.people());

@@ -1,5 +1,6 @@
 import type { WeftClient } from '../../../proto/js/index.js';
 import type { State, Viewer } from '../../../proto/js/messages.js';
+import { late_styles } from './late_styles.js';
 import type { People } from './people.js';
 
 const MOST_SHOWN = 40;
@@ -16,6 +17,9 @@ interface Tools {
   /** The page's address with another token. */
   link_with(token: string): string;
 }
+
+/** The list's own styles, which must have come before it is shown. */
+export const styles = () => late_styles('people.css');
 
 /** Who is here, who may hold the cloth, and links that let others in. */
 export class PeopleList {
@@ -66,7 +70,8 @@ export class PeopleList {
     const row = make('li', '');
     row.style.setProperty('--color', viewer.color);
     const role = viewer.role === 'viewer' ? '' : ` · ${viewer.role}`;
-    const name = make('span', 'viewer-name', viewer.name);
+    const name = make('bdi', 'viewer-name', viewer.name);
+    name.title = viewer.name;
     row.append(make('span', 'swatch'), name, make('span', 'role', `${viewer.id === own ? ' (you)' : ''}${role}`));
     if (operates) row.append(this.hand_box(viewer));
     if (viewer.id === own) return row;

@@ -1,4 +1,5 @@
 import type { WeftClient } from '../../../proto/js/index.js';
+import { late_styles } from './late_styles.js';
 import type { RoomTools } from './room_tools.js';
 import { type Room, RoomWatch } from './room_watch.js';
 import { write } from './room_words.js';
@@ -29,7 +30,6 @@ export class RoomDialog {
   private watch: RoomWatch;
   private wall: Wall;
   private operates = false;
-  private styles: Promise<void> | null = null;
 
   constructor(
     private client: WeftClient,
@@ -52,11 +52,7 @@ export class RoomDialog {
 
   async open(): Promise<void> {
     if (this.dialog.open) return;
-    this.styles ??= fetch_styles();
-    await this.styles.catch((error) => {
-      this.styles = null; // the next press tries again
-      throw error;
-    });
+    await late_styles('rooms.css');
     if (!this.scene.options.length) await this.fetch_scenes();
     this.dialog.showModal();
     this.watch.start();
@@ -103,6 +99,7 @@ export class RoomDialog {
       this.dialog.close();
       this.tools.go(name);
     });
+    open.title = name; // which may be cut
     head.append(open);
     const cells = HEADS.slice(1).map(() => cell('td', '') as HTMLTableCellElement);
     const close = button('Close', `Close ${name}`, () => this.attempt(this.client.closeRoom(name)));
@@ -148,16 +145,6 @@ export class RoomDialog {
     this.scene.value = this.client.welcome?.scene ?? '';
     if (!this.scene.value) this.scene.selectedIndex = 0;
   }
-}
-
-function fetch_styles(): Promise<void> {
-  const link = Object.assign(document.createElement('link'), { rel: 'stylesheet', href: 'rooms.css' });
-  const loaded = new Promise<void>((done, fail) => {
-    link.addEventListener('load', () => done());
-    link.addEventListener('error', () => fail(new Error('the styles of the dialog did not come')));
-  });
-  document.head.append(link);
-  return loaded;
 }
 
 function cell(tag: 'th' | 'td', text: string, scope = ''): HTMLElement {

@@ -88,7 +88,7 @@ export class RoomPanel {
     const room = own_room();
     const first = room === FIRST_ROOM;
     element('room-line').hidden = first && !this.many;
-    element('room-name').textContent = room;
+    element('room-name').textContent = element('room-name').title = room;
     document.title = first ? 'Weft' : `${room} · Weft`;
     element('room-back').hidden = first && !this.from;
     element('room-back').title = `Back to ${this.from || FIRST_ROOM}`;

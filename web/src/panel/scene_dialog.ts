@@ -1,7 +1,11 @@
+import { late_styles } from './late_styles.js';
 import { grouped } from './scene_groups.js';
 import type { Group, Scene } from './scene_groups.js';
 
 const part = (id: string) => document.getElementById(id)!;
+
+/** The dialog's own styles, which must have come before it is opened. */
+export const styles = () => late_styles('scenes.css');
 
 /**
  * The server's scenes in groups, with a search and a picture each. It is a bundle of its own, which

@@ -18,9 +18,10 @@ export class SceneList {
 
   async open(): Promise<void> {
     if (this.button.disabled) return;
-    this.dialog ??= import('./scene_dialog.js').then(
-      ({ SceneDialog }) => new SceneDialog(title_of, this.load),
-    );
+    this.dialog ??= import('./scene_dialog.js').then(async ({ SceneDialog, styles }) => {
+      await styles();
+      return new SceneDialog(title_of, this.load);
+    });
     try {
       (await this.dialog).open(this.scenes, this.shown);
     } catch {

@@ -68,7 +68,9 @@ export class Wall {
     const [people, badge, crossings] = ['people', 'badge', 'crossings'].map((kind) => piece('span', kind));
     const button = document.createElement('button');
     button.type = 'button';
-    button.append(canvas, piece('b', '', name), people, badge, crossings);
+    const title = piece('b', '', name);
+    title.title = name; // which may be cut
+    button.append(canvas, title, people, badge, crossings);
     button.addEventListener('click', () => {
       this.dialog.close();
       this.tools.go(name);

@@ -2,6 +2,7 @@ import { Group, Vector3 } from 'three';
 import type { PerspectiveCamera } from 'three';
 import type { Vec3 } from '../../../proto/js/messages.js';
 import { MarkDot } from './marks.js';
+import { named, write_words } from './words.js';
 
 const RADIUS = 5; // [pixels]
 const MOST = 12; // drawn; more hide the cloth
@@ -32,7 +33,7 @@ export class Cursors {
       const { dot, label } = this.marks[k];
       dot.color = color;
       dot.set(place, camera, height);
-      if (label.textContent !== name) label.textContent = name;
+      if (label.textContent !== name) write_words(label, named(name));
       label.style.setProperty('--color', color);
       const point = new Vector3(...place).project(camera);
       label.hidden = Math.abs(point.z) > 1;

@@ -2,6 +2,7 @@ import { Group, Vector3 } from 'three';
 import type { PerspectiveCamera } from 'three';
 import type { Grab, Vec3, Viewer } from '../../../proto/js/messages.js';
 import { MarkDot, MarkLine } from './marks.js';
+import { named, write_words } from './words.js';
 
 export const NO_COLOR = '#5c6068'; // of an unknown viewer
 const LINE_WIDTH = 2.5; // [pixels]
@@ -82,7 +83,8 @@ class HandMark {
   private held = new MarkDot(DOT_RADIUS, 21);
   private target = new MarkDot(TARGET_RADIUS, 23);
   private label = document.createElement('span');
-  private force: number | null = null; // as written [N]
+  private words = ''; // as written
+  private force: number | null = null; // the same [N]
   private label_width = 0; // of what is written; 0: not measured yet [pixels]
 
   constructor(private labels: HTMLElement) {
@@ -115,7 +117,7 @@ class HandMark {
     const target = new Vector3(...hand.target);
     const place = hand.own ? target.clone().add(new Vector3(...hand.held)).multiplyScalar(0.5) : target;
     const point = place.project(camera);
-    label.hidden = Math.abs(point.z) > 1 || label.textContent === '';
+    label.hidden = Math.abs(point.z) > 1 || this.words === '';
     if (label.hidden) return;
     this.label_width ||= label.offsetWidth;
     const above = hand.finger ? FINGER_OFFSET : 0;
@@ -144,10 +146,11 @@ class HandMark {
       this.force !== null &&
       Math.abs(force - this.force) < Math.max(STEADY_FORCE, STEADY_PART * this.force);
     if (!steady) this.force = force;
-    const words = [own ? '' : name, this.force === null ? '' : force_text(this.force)];
+    const words = [own ? '' : named(name), this.force === null ? '' : force_text(this.force)];
     const text = words.filter(Boolean).join(' · ');
-    if (label.textContent === text) return;
-    label.textContent = text;
+    if (this.words === text) return;
+    this.words = text;
+    write_words(label, text);
     this.label_width = 0;
   }
 }

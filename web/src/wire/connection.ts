@@ -1,4 +1,5 @@
 import { CommandError, WeftClient } from '../../../proto/js/index.js';
+import { shown_name } from './names.js';
 import { own_room, own_token, socket_of } from './own_address.js';
 import { WorkerFrames } from './worker_frames.js';
 
@@ -40,6 +41,10 @@ export function connect_client(name: string): WeftClient {
   client.wantedView = { codec: 'packed', error: SHOWN_ERROR, ...(document.hidden ? { hz: 0 } : {}) };
   window.addEventListener('pagehide', () => client.close());
   window.addEventListener('pageshow', ({ persisted }) => persisted && void client.connect());
+  // Heard before all others, which so know no other names.
+  client.on('roster', ({ viewers }) => {
+    for (const viewer of viewers) viewer.name = shown_name(viewer);
+  });
   client.connect().catch(() => {}); // the status reports failures
   return client;
 }
