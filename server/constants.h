@@ -29,9 +29,15 @@ inline constexpr std::uint64_t kForcesAskedTicks = 600;
 /// delays ticks. Smaller: it waits for more of them.
 inline constexpr double kOrderSlice = 0.1;
 
+/// A hand of a viewer that is no operator holds at most one part in kHoldsBeside of the particles
+/// of a cloth that it shares, or kNarrowHold of them if that is more. Larger part: one hand takes
+/// the cloth from all others. Smaller: who wants to hold much needs several hands.
+inline constexpr std::size_t kHoldsBeside = 4, kNarrowHold = 64;
+
 /// A cheaper command than this costs its viewer nothing [s of CPU]. After a more expensive one its
-/// viewer waits kWaitPerCost times as long before its next, if other viewers are present. Larger:
-/// one viewer can keep others waiting. Smaller: scripts that ask much are held up.
+/// viewer waits kWaitPerCost times as long before its next, if other viewers are present, here or
+/// in another room. Larger: one viewer can keep others waiting. Smaller: scripts that ask much are
+/// held up.
 inline constexpr double kFreeCost = 2e-3, kWaitPerCost = 3;
 
 /// A viewer waits this long after its `load` [s], because the new scene is sent to all. Larger: a

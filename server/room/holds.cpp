@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <iterator>
+#include <string>
 
+#include "server/constants.h"
 #include "server/room/refusals.h"
 
 namespace weft::server {
@@ -50,6 +52,16 @@ ViewerId Holds::owner(PinId pin) const {
   return found == pin_owners_.end() ? 0 : found->second;
 }
 
+bool Holds::pass_pins(ViewerId from, ViewerId to) {
+  bool any = false;
+  for (auto& [pin, owner] : pin_owners_) {
+    if (owner != from) continue;
+    owner = to;
+    any = true;
+  }
+  return any;
+}
+
 void Holds::clear() {
   hands_.clear();
   pin_owners_.clear();
@@ -82,6 +94,19 @@ std::optional<proto::Error> check_free(const Holds& holds, const ServedWorld& wo
                          static_cast<std::uint32_t>(particle), "take another or wait");
   }
   return std::nullopt;
+}
+
+std::optional<proto::Error> check_width(const ServedWorld& world, Index particle, double radius) {
+  const std::size_t count = world.model().mass.size();
+  const std::size_t most = std::max(kNarrowHold, count / kHoldsBeside);
+  if (count <= most || particles_in_disc(world.model(), particle, radius).size() <= most)
+    return std::nullopt;
+  proto::Error error = proto::make_error(
+      ErrorCode::held, "a hand so wide leaves others nothing to hold",
+      "take less: of " + std::to_string(count) + " particles at most " + std::to_string(most));
+  error.field = "radius";
+  error.value = proto::number_text(radius);
+  return error;
 }
 
 std::vector<proto::PinInfo> pins_of(const ServedWorld& world, const Holds& holds) {

@@ -42,6 +42,10 @@ class Holds {
   void disown(PinId pin) { pin_owners_.erase(pin); }
   /// 0: the scene itself.
   proto::ViewerId owner(PinId pin) const;
+  const std::map<PinId, proto::ViewerId>& pin_owners() const { return pin_owners_; }
+  /// The pins of one viewer become another's: the same person that has come back.
+  /// @return whether there are any
+  bool pass_pins(proto::ViewerId from, proto::ViewerId to);
 
   /// No viewer holds anything.
   void clear();
@@ -54,6 +58,9 @@ class Holds {
 /// Why a viewer may not begin a drag of this number; nothing if it may.
 std::optional<proto::Error> check_new_hand(const Holds& holds, proto::ViewerId viewer,
                                            std::uint32_t drag, const proto::ServerLimits& limits);
+/// Why a viewer that shares the cloth may not hold so much of it at once that others find nothing
+/// to hold.
+std::optional<proto::Error> check_width(const ServedWorld& world, Index particle, double radius);
 /// Why a viewer may not take hold of a particle: another viewer's hand has it.
 std::optional<proto::Error> check_free(const Holds& holds, const ServedWorld& world,
                                        proto::ViewerId viewer, Index particle);

@@ -35,6 +35,9 @@ class OtherRooms {
   /// @returns nothing if it does
   virtual std::optional<proto::Error> close(const std::string& name) = 0;
 
+  /// Whether another room than this has viewers.
+  virtual bool others_have_viewers(const std::string& name) const = 0;
+
   /// Whether ticks of a room may cost so much, beside those of all the others.
   /// @returns nothing if they may; then that counts from now on
   virtual std::optional<proto::Error> admit(const std::string& room, const TickCost& cost) = 0;

@@ -24,8 +24,8 @@ Grant grant_in(Grant grant, std::string_view room) {
   return grant;
 }
 
-bool may_hold(HandRight hand, proto::Policy policy) {
-  if (hand == HandRight::by_policy) return policy != proto::Policy::watch;
+bool may_hold(HandRight hand, proto::Policy policy, bool leads) {
+  if (hand == HandRight::by_policy) return leads || policy != proto::Policy::watch;
   return hand == HandRight::given;
 }
 

@@ -36,7 +36,8 @@ struct Grant {
 Grant grant_in(Grant grant, std::string_view room);
 
 /// Whether a viewer may hold the cloth under a policy.
-bool may_hold(HandRight hand, proto::Policy policy);
+/// @param leads  an operator by its token, which no policy keeps from holding
+bool may_hold(HandRight hand, proto::Policy policy, bool leads);
 
 /// Most hands that a viewer may have.
 /// @param usual  of the server

@@ -75,6 +75,12 @@ void Room::go_on(RoomPast&& past) {
   note_grabs(*world_, told_);
 }
 
+/// Whether what a viewer's commands cost costs no other viewer, of this room or of others.
+bool Room::is_alone() const {
+  return viewers_.size() < 2 &&
+         !(options_.others && options_.others->others_have_viewers(options_.name));
+}
+
 void Room::take_now(Inbound item) {
   if (const auto* joining = std::get_if<Join>(&item.what)) return join(item.viewer, *joining);
   if (std::holds_alternative<Leave>(item.what)) return leave(item.viewer);
@@ -83,10 +89,10 @@ void Room::take_now(Inbound item) {
   if (const auto* grant = std::get_if<Grant>(&item.what)) return admit(found->second, *grant);
   found->second.applied = item.number;
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
-    const bool alone = viewers_.size() < 2;  // its commands cost no other viewer
-    const double before = alone ? 0 : options_.cpu_clock();
+    const double before = options_.cpu_clock();
     handle(item.viewer, *request);
-    if (!alone) charge(item.viewer, options_.cpu_clock() - before);
+    const double cost = options_.cpu_clock() - before;
+    if (!is_alone()) charge(item.viewer, cost);
     on_finished(item.viewer);
     return;
   }

@@ -166,6 +166,8 @@ class Room {
     bool chosen = false;  ///< by an operator
     /// How many that were muted have left, by the number of their token.
     std::map<std::uint64_t, std::uint32_t> muted_away;
+    /// What persons that have left were last, by the number of their token.
+    std::map<std::uint64_t, proto::ViewerId> left_as;
   };
 
   /// The tick that runs, or the last one.
@@ -180,6 +182,7 @@ class Room {
   using Outcome = proto::Result<proto::Reply>;
 
   bool rests() const { return options_.rests_when_empty && viewers() == 0; }
+  bool is_alone() const;
 
   // room_order.cpp: the order of commands
   bool must_wait(const Inbound& item) const;
@@ -202,6 +205,7 @@ class Room {
   void join(proto::ViewerId id, const Join& join);
   void admit(Viewer& viewer, const Grant& grant);
   void take_token(Viewer& viewer, const Grant& grant);
+  void take_pins_back(const Viewer& viewer);
   void follow_person(const Viewer& changed);
   void leave_mute(const Viewer& viewer);
   bool comes_muted(const Grant& grant);
@@ -209,6 +213,7 @@ class Room {
   void leave(proto::ViewerId viewer);
   void pass_on_operation();
   bool may_hold(const Viewer& viewer) const;
+  bool leads(const Viewer& viewer) const;
   bool only_looks(const Viewer& viewer) const;
   void let_go_forbidden(proto::ViewerId viewer);
   std::optional<proto::Error> check_owner(proto::ViewerId viewer, PinId pin) const;

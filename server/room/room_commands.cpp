@@ -83,9 +83,15 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
   if (auto error = check_new_hand(holds_, viewer, command.drag, limits)) return *std::move(error);
   const auto point = resolve_hold(*world_, command.hold);
   if (!point) return point.error();
-  if (auto error = check_free(holds_, *world_, viewer, nearest_corner(*world_, *point)))
-    return *std::move(error);
   const GrabDef def = grab_def(*world_, command, *point);
+  const Viewer& self = viewers_.at(viewer);
+  const Index particle = nearest_corner(*world_, *point);
+  // Who leads takes hold beside the hands of others.
+  if (auto error = check_free(holds_, *world_, viewer, particle); error && !leads(self))
+    return *std::move(error);
+  const bool shares = self.info.role == proto::Role::viewer && viewers() > 1;
+  if (auto error = check_width(*world_, particle, def.radius); error && shares)
+    return *std::move(error);
   const GrabId grab = world_->grab(def);
   holds_.add({grab, viewer, command.drag, clock_()});
   change(&News::grabs);
@@ -142,10 +148,8 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
 }
 
 Room::Outcome Room::release_pins(const std::vector<std::uint32_t>& ids) {
-  for (const std::uint32_t id : ids) {
-    world_->unpin(id);
-    holds_.disown(id);
-  }
+  world_->unpin(ids);
+  for (const std::uint32_t id : ids) holds_.disown(id);
   if (!ids.empty()) change(&News::pins);
   return proto::Reply(proto::ReleaseReply{world_->tick(), ids});
 }
@@ -233,7 +237,7 @@ Room::Outcome Room::apply(ViewerId, const proto::Save& command) {
     return *std::move(error);
   std::unique_ptr<ServedWorld> kept = world_->fork();
   for (const Hand& hand : holds_.hands()) kept->release(hand.grab);
-  saves_.keep(command.name, {std::move(kept), guarantee_, mesh_, forces_});
+  saves_.keep(command.name, {std::move(kept), guarantee_, mesh_, forces_, holds_.pin_owners()});
   return proto::Reply(proto::DoneReply{"save", world_->tick()});
 }
 
@@ -247,6 +251,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Restore& command) {
   guarantee_ = save.guarantee;
   forces_ = save.forces;
   tell_jump("restored", "the cloth is back in its state " + command.name, viewer);
+  for (const auto& [pin, owner] : save.pin_owners) holds_.own(pin, owner);
   tell_guarantee();
   return proto::Reply(proto::DoneReply{"restore", world_->tick()});
 }

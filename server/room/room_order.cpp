@@ -17,7 +17,11 @@ void Room::take(Inbound item) {
 
 void Room::take_meanwhile(Inbound item) {
   const bool may_run = may_run_meanwhile(item);
-  if (tick_.runs && may_run && is_beside_the_cloth(item)) return take_now(std::move(item));
+  // What follows a pause is about the state that stands.
+  const bool stands_next = order_.advance ? order_.advance->paused : paused();
+  const bool waits = stands_next && is<proto::Hash>(item);
+  if (tick_.runs && may_run && !waits && is_beside_the_cloth(item))
+    return take_now(std::move(item));
   tick_.replaced = tick_.replaced || (may_run && replaces_state(item));
   order_.waiting.push_back(std::move(item));
 }

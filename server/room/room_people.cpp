@@ -88,6 +88,15 @@ void Room::take_token(Viewer& viewer, const Grant& grant) {
   if (comes_muted(grant)) viewer.hand = HandRight::muted;
   viewer.token = grant.token;
   viewer.named = !grant.name.empty();
+  if (viewer.named) take_pins_back(viewer);
+}
+
+/// A person that has left and comes back with the same token has its pins again.
+void Room::take_pins_back(const Viewer& viewer) {
+  const auto left = rights_.left_as.find(viewer.token);
+  if (left == rights_.left_as.end()) return;
+  if (holds_.pass_pins(left->second, viewer.info.id)) change(&News::pins);
+  rights_.left_as.erase(left);
 }
 
 /// Gives a viewer what its token grants.
@@ -112,6 +121,7 @@ void Room::leave(ViewerId viewer) {
   if (found == viewers_.end()) return;
   const bool glanced = found->second.glances;
   leave_mute(found->second);
+  if (found->second.named && !glanced) rights_.left_as[found->second.token] = viewer;
   viewers_.erase(found);
   if (glanced) {
     --glances_;
@@ -140,7 +150,12 @@ void Room::pass_on_operation() {
 }
 
 bool Room::may_hold(const Viewer& viewer) const {
-  return server::may_hold(viewer.hand, rights_.policy);
+  return server::may_hold(viewer.hand, rights_.policy, leads(viewer));
+}
+
+/// Whether it is an operator by its token, as a teacher is.
+bool Room::leads(const Viewer& viewer) const {
+  return viewer.by_token && viewer.info.role != Role::viewer;
 }
 
 /// Whether it can change nothing.

@@ -20,6 +20,7 @@ struct Save {
   GuaranteeWatch<float> guarantee;
   proto::MeshAnnouncement mesh;  ///< with the thickness of its fabrics
   MeasuredForces forces;
+  std::map<PinId, proto::ViewerId> pin_owners;
 };
 
 /// States that a room keeps in memory, by name; all of its present scene.

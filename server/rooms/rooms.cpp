@@ -251,6 +251,13 @@ std::optional<proto::Error> Rooms::close(const std::string& name) {
   return std::nullopt;
 }
 
+bool Rooms::others_have_viewers(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  return std::any_of(rooms_.begin(), rooms_.end(), [&](const auto& entry) {
+    return entry.first != name && entry.second->empty_since() == kNever;
+  });
+}
+
 /// Why a room may not cost so much beside others, within a share of what all may. Under the lock.
 /// @param counts  whether another room is one of them
 /// @param whose   they are, as the error tells

@@ -67,6 +67,7 @@ class Rooms : public OtherRooms {
   proto::Result<proto::RoomInfo> open(const std::shared_ptr<RoomName>& name, BuiltScene&& scene,
                                       bool paused) override;
   std::optional<proto::Error> close(const std::string& name) override;
+  bool others_have_viewers(const std::string& name) const override;
   std::optional<proto::Error> admit(const std::string& room, const TickCost& cost) override;
 
  private:

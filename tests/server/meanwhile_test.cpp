@@ -116,6 +116,22 @@ TEST_CASE("a pause is answered with the tick at which the cloth then stands") {
   }
 }
 
+TEST_CASE("a hash behind a pause is that of the state in which the cloth stands") {
+  for (const int stop : {0, 1, 5}) {
+    INFO("stop point " << stop);
+    BusyRoom t;
+    t.room->join(1);
+    t.do_at(stop, [&] {
+      t.say_meanwhile(1, R"({"op":"pause","id":4})");
+      t.say_meanwhile(1, R"({"op":"hash","id":5})");
+    });
+    t.room->tick(1);
+    REQUIRE(t.done);
+    CHECK(t.answer(5)["tick"] == t.answer(4)["tick"]);
+    CHECK(t.answer(5)["hash"] == hash_of(t.get()));
+  }
+}
+
 TEST_CASE("a pause within a tick of an advance is answered at once and ends it with that tick") {
   for (const proto::ViewerId viewer : {1u, 2u}) {
     INFO("by viewer " << viewer);

@@ -1,4 +1,4 @@
-// A mute holds for who comes again with its token.
+// A mute holds, and pins belong, to who comes again with its token.
 
 #include <stdexcept>
 #include <string>
@@ -93,6 +93,27 @@ TEST_CASE("a person that is here by several connections is muted, and may hold a
   CHECK(room.holds(first));
   room.say("mute", unnamed);
   CHECK(room.holds(same));
+}
+
+TEST_CASE("a person that leaves and comes back with its token has its pins again") {
+  TestRoom t(true);
+  t.join(1);
+  const Grant anna{Role::viewer, HandRight::by_policy, "Anna", true, "", 5};
+  const Grant everyone{Role::viewer, HandRight::by_policy, "", true, "", 6};
+  t.room->take({2, 0, Join{false, anna}});
+  t.room->take({3, 0, Join{false, everyone}});
+  const json pin = t.say(2, R"({"op":"pin","id":1,"particle":33})");
+  const json other = t.say(3, R"({"op":"pin","id":2,"particle":30})");
+  const auto release = [](const json& of) {
+    return R"({"op":"release","id":3,"pin":)" + std::to_string(of["pin"].get<int>()) + "}";
+  };
+  t.room->take({2, 0, Leave{}});
+  t.room->take({3, 0, Leave{}});
+  t.room->take({4, 0, Join{false, everyone}});  // a token that a class shares is nobody's own
+  CHECK(t.say(4, release(pin))["code"] == "not_allowed");
+  CHECK(t.say(4, release(other))["code"] == "not_allowed");
+  t.room->take({5, 0, Join{false, anna}});
+  CHECK(t.say(5, release(pin))["op"] == "result");
 }
 
 }  // namespace weft::server

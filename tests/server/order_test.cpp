@@ -209,6 +209,47 @@ TEST_CASE("what a viewer changed before it went is changed, and what it asked is
   CHECK(t.say(2, R"({"op":"advance","id":3,"n":1})")["op"] == "result");
 }
 
+/// Rooms of which another one may have viewers.
+struct OneOtherRoom : OtherRooms {
+  bool has_viewers = false;
+
+  proto::ListRoomsReply list() const override { return {}; }
+  proto::Result<std::shared_ptr<RoomName>> reserve(const std::string&,
+                                                   const std::string&) override {
+    return std::shared_ptr<RoomName>();
+  }
+  proto::Result<proto::RoomInfo> open(const std::shared_ptr<RoomName>&, BuiltScene&&,
+                                      bool) override {
+    return proto::RoomInfo{};
+  }
+  std::optional<proto::Error> close(const std::string&) override { return std::nullopt; }
+  bool others_have_viewers(const std::string&) const override { return has_viewers; }
+  std::optional<proto::Error> admit(const std::string&, const TickCost&) override {
+    return std::nullopt;
+  }
+};
+
+TEST_CASE("after a dear command a viewer alone waits too, if another room has viewers") {
+  double cpu = 0;
+  OneOtherRoom others;
+  RoomOptions options;
+  options.cpu_clock = [&cpu] { return cpu += 0.05; };
+  options.others = &others;
+  TestRoom t(true, {}, options);
+  t.join(1);
+  t.tell(1, R"({"op":"hash","id":1})");
+  t.tell(1, R"({"op":"hash","id":2})");
+  CHECK_FALSE(t.output.last("result", 2).is_null());
+  others.has_viewers = true;
+  t.tell(1, R"({"op":"hash","id":3})");
+  t.tell(1, R"({"op":"hash","id":4})");
+  CHECK_FALSE(t.output.last("result", 3).is_null());
+  CHECK(t.output.last("result", 4).is_null());
+  t.clock.now += 0.2;
+  t.room->finish_turn();
+  CHECK_FALSE(t.output.last("result", 4).is_null());
+}
+
 TEST_CASE("after a dear command a viewer waits in proportion, while others are answered") {
   double cpu = 0;
   RoomOptions options;

@@ -352,4 +352,37 @@ TEST_CASE("tokens grant what their line says, and lines that are wrong are refus
   CHECK_THROWS_AS(Tokens().read("--tokens", "# nothing\n"), OptionError);
 }
 
+TEST_CASE("an operator by its token holds under every policy, also after it has come back") {
+  TestRoom t(true);
+  const Grant leads{Role::operator_, HandRight::by_policy, "Teacher", true, "", 7};
+  t.room->take({1, 0, Join{false, leads}});
+  t.room->take({2, 0, Join{false, Grant{Role::viewer, HandRight::by_policy, "", true}}});
+  t.say(1, R"({"op":"policy","policy":"watch"})");
+  t.room->take({1, 0, Leave{}});
+  t.room->take({3, 0, Join{false, leads}});
+  const char* const start = R"({"op":"drag","phase":"start","id":1,"drag":0,"particle":30})";
+  CHECK(t.say(2, start)["code"] == "not_allowed");
+  CHECK(t.say(3, start)["op"] == "result");
+  CHECK(t.output.last("roster")["viewers"][1]["hand"] == true);
+}
+
+TEST_CASE("a viewer cannot hold so much that others find nothing; an operator holds beside it") {
+  TestRoom t(true, {{"cloth.rows", "20"}, {"cloth.columns", "20"}});
+  const Grant leads{Role::operator_, HandRight::by_policy, "", true};
+  t.room->take({1, 0, Join{false, leads}});
+  t.room->take({2, 0, Join{false, Grant{Role::viewer, HandRight::by_policy, "", true}}});
+  const auto wide =
+      t.say(2, R"({"op":"drag","phase":"start","id":2,"drag":0,"particle":210,"radius":100})");
+  CHECK(wide["code"] == "held");
+  CHECK(wide["field"] == "radius");
+  CHECK(wide["value"] == 100);
+  CHECK(t.room->world().grabs().list.empty());
+  CHECK(t.say(2, R"({"op":"drag","phase":"start","id":3,"drag":0,"particle":210})")["op"] ==
+        "result");
+  CHECK(
+      t.say(1,
+            R"({"op":"drag","phase":"start","id":4,"drag":0,"particle":210,"radius":100})")["op"] ==
+      "result");
+}
+
 }  // namespace weft::server

@@ -93,5 +93,18 @@ TEST_CASE("saves and restores are in the log, so that its replay ends alike") {
   CHECK(again.room->world().hash() == t.room->world().hash());
 }
 
+TEST_CASE("a restored pin belongs to the viewer that set it") {
+  TestRoom t(true);
+  t.join(1);
+  t.room->take({2, 0, Join{false, Grant{proto::Role::viewer, HandRight::by_policy, "", true}}});
+  const auto pin = t.say(2, R"({"op":"pin","id":1,"particle":33})");
+  t.say(1, name_text("save", "a", 2));
+  t.say(1, R"({"op":"release","all":true})");
+  t.say(1, name_text("restore", "a", 3));
+  CHECK(t.output.last("pins")["pins"].back()["viewer"] == 2);
+  CHECK(t.say(2, R"({"op":"release","id":4,"pin":)" + std::to_string(pin["pin"].get<int>()) +
+                     "}")["op"] == "result");
+}
+
 }  // namespace
 }  // namespace weft::server

@@ -1,12 +1,18 @@
 """What calls of the Python client take, how long they wait, and how fast they come."""
 
 import asyncio
+import contextlib
 import functools
+import gc
 import random
+import socket
+import time
 import unittest
+import warnings
 from unittest import mock
 
 import golden
+import websockets
 import weft
 from played_server import GRID, WELCOME, PlayedServer
 
@@ -124,6 +130,70 @@ class CallsTest(unittest.IsolatedAsyncioTestCase):
                 await asyncio.wait_for(welcomed.wait(), 20)
                 await asyncio.sleep(1.2)  # its turn would have come
                 self.assertEqual(self.server.of("hash"), [])
+
+
+class JoiningTest(unittest.IsolatedAsyncioTestCase):
+    """`timeout` bounds joining as a whole."""
+
+    async def fails(self, url, seconds, why, **options):
+        begin = time.monotonic()
+        with self.assertRaisesRegex(weft.ConnectionLost, f"no connection to {url}: {why} within {seconds:g} s"):
+            await weft.connect(url, timeout=seconds, **options)
+        self.assertLess(time.monotonic() - begin, 1.6 * seconds)
+
+    async def test_a_server_that_accepts_and_does_not_answer_is_given_up_in_time(self):
+        with socket.create_server(("127.0.0.1", 0)) as silent:  # the system accepts for it
+            await self.fails(f"ws://127.0.0.1:{silent.getsockname()[1]}/ws", 2, "no answer")
+
+    async def test_a_server_that_answers_late_and_then_does_not_begin_is_given_up_in_time(self):
+        async def late(path, headers):
+            await asyncio.sleep(1.5)
+
+        async with websockets.serve(lambda joined: joined.wait_closed(), "127.0.0.1", 0, process_request=late,
+                                    subprotocols=["weft.v1"]) as server:
+            await self.fails(f"ws://127.0.0.1:{server.sockets[0].getsockname()[1]}/ws", 2, "the server does not begin")
+
+    async def test_a_server_that_does_not_answer_to_a_name_is_given_up_in_time(self):
+        async with PlayedServer() as server:
+            server.answers = {"hello": []}
+            await self.fails(server.url, 2, "the server does not begin", name="Ada")
+
+
+class ClosingTest(unittest.IsolatedAsyncioTestCase):
+    """A client that is closed leaves nothing behind, and says nothing of it."""
+
+    async def asyncSetUp(self):
+        self.server = await self.enterAsyncContext(PlayedServer())
+        self.server.answers = {"drag": [{"grab": 17, "target": [0, 0, 0]}]}
+
+    async def test_a_hand_that_holds_ends_with_its_client(self):
+        before = asyncio.all_tasks()
+        client = await weft.connect(self.server.url)
+        hand = await client.drag(7).start()
+        self.assertFalse(hand._repeater.done())
+        await client.close()
+        self.assertTrue(hand._repeater.done())
+        self.assertFalse([task for task in asyncio.all_tasks() - before if "_repeat" in str(task)])
+
+    async def test_a_blocking_client_with_a_hand_that_holds_closes_without_a_word(self):
+        def script():
+            with weft.open(self.server.url) as cloth:
+                cloth.drag(7).start()
+            with weft.open(self.server.url) as cloth, cloth.drag(8):
+                cloth.close()
+            with self.assertRaisesRegex(weft.ConnectionLost, "this client was closed"):
+                cloth.pause()
+            gc.collect()
+
+        with self.assertNoLogs("asyncio", "ERROR"), self.assertNoWarnings():
+            await asyncio.to_thread(script)
+
+    @contextlib.contextmanager
+    def assertNoWarnings(self):
+        with warnings.catch_warnings(record=True) as told:
+            warnings.simplefilter("always")
+            yield
+        self.assertEqual([str(one.message) for one in told if "never awaited" in str(one.message)], [])
 
 
 class PaceTest(unittest.IsolatedAsyncioTestCase):
