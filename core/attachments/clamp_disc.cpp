@@ -57,16 +57,14 @@ std::vector<Index> particles_of_disc(const ClampDisc& disc, const ClothModel<Rea
 }
 
 template <class Real>
-void put_disc(const ClampDisc& disc, const ClothModel<Real>& model,
-              std::vector<std::array<double, 2>>& factors) {
+void put_disc(const ClampDisc& disc, std::span<const Index> held, const ClothModel<Real>& model,
+              const std::vector<Index>& sites, std::vector<std::array<double, 2>>& factors) {
   const ClothPart<Real>& part = model.parts[disc.part];
-  const GridCells& cells = part.cells;
-  assert(factors.size() == cells.particles.size());
-  for (std::size_t site = 0; site < factors.size(); ++site) {
-    if (cells.particles[site] == kNone) continue;
-    const std::array<double, 2> place =
-        place_of(model, part.particles.first + cells.particles[site]);
+  assert(factors.size() == part.cells.particles.size());
+  for (const Index particle : held) {
+    const std::array<double, 2> place = place_of(model, particle);
     if (!disc.holds(place)) continue;
+    const Index site = sites[static_cast<std::size_t>(particle - part.particles.first)];
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const double along = place[axis] - disc.middle[axis];
       std::array<double, 2> next = place;
@@ -75,7 +73,8 @@ void put_disc(const ClampDisc& disc, const ClothModel<Real>& model,
       // A line that touches the circle, or has one held particle, does not bend there.
       if (along == 0 || beyond >= 1 || disc.holds(next)) continue;
       assert(beyond > kMostBeyond - 1.001);
-      factors[site][axis] = std::round(kStiffeningParts / (0.5 + beyond)) / kStiffeningParts;
+      factors[static_cast<std::size_t>(site)][axis] =
+          std::round(kStiffeningParts / (0.5 + beyond)) / kStiffeningParts;
     }
   }
 }
@@ -83,8 +82,8 @@ void put_disc(const ClampDisc& disc, const ClothModel<Real>& model,
 #define WEFT_INSTANTIATE(Real)                                                              \
   template std::optional<ClampDisc> clamp_of_disc(const ClothModel<Real>&, Index, double);  \
   template std::vector<Index> particles_of_disc(const ClampDisc&, const ClothModel<Real>&); \
-  template void put_disc(const ClampDisc&, const ClothModel<Real>&,                         \
-                         std::vector<std::array<double, 2>>&);
+  template void put_disc(const ClampDisc&, std::span<const Index>, const ClothModel<Real>&, \
+                         const std::vector<Index>&, std::vector<std::array<double, 2>>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

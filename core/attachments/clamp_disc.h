@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -42,9 +43,11 @@ template <class Real>
 std::vector<Index> particles_of_disc(const ClampDisc& disc, const ClothModel<Real>& model);
 
 /// Sets the factors of a disc, 0 to kMostStiffening, at the sites of its part's grid.
+/// @param held     the particles that it holds
+/// @param sites    of the part's particles
 /// @param factors  one for each site
 template <class Real>
-void put_disc(const ClampDisc& disc, const ClothModel<Real>& model,
-              std::vector<std::array<double, 2>>& factors);
+void put_disc(const ClampDisc& disc, std::span<const Index> held, const ClothModel<Real>& model,
+              const std::vector<Index>& sites, std::vector<std::array<double, 2>>& factors);
 
 }  // namespace weft

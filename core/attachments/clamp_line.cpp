@@ -27,6 +27,18 @@ void put(const ClampLine& clamp, int lines, std::vector<double>& factors) {
   factors[static_cast<std::size_t>(clamp.line)] = clamp.stiffening;
 }
 
+/// The sites of a grid's particles.
+template <class Real>
+std::vector<Index> sites_of(const ClothPart<Real>& part) {
+  const std::vector<Index>& particles = part.cells.particles;
+  std::vector<Index> sites(static_cast<std::size_t>(part.particles.count), 0);
+  for (std::size_t site = 0; site < particles.size(); ++site) {
+    if (particles[site] != kNone)
+      sites[static_cast<std::size_t>(particles[site])] = static_cast<Index>(site);
+  }
+  return sites;
+}
+
 /// The factor of the row that both ends of a hinge's edge lie on, or else of the column.
 /// @param a,b  numbers of the ends' places in the grid
 double stiffening_between(int a, int b, const GridCells& cells) {
@@ -99,11 +111,15 @@ std::vector<std::size_t> set_clamps(const Clamps& clamps, ClothModel<Real>& mode
     BendingFactors& of = factors[line.part];
     line.is_row() ? put(line, cells.rows, of.rows) : put(line, cells.columns, of.columns);
   }
-  for (const ClampDisc& disc : clamps.discs) {
-    assert(disc.part < model.parts.size());
-    std::vector<std::array<double, 2>>& sites = factors[disc.part].sites;
-    sites.resize(model.parts[disc.part].cells.particles.size(), {1, 1});
-    put_disc(disc, model, sites);
+  std::vector<std::vector<Index>> sites(model.parts.size());
+  for (const HeldDisc& held : clamps.discs) {
+    const std::size_t part = held.disc.part;
+    assert(part < model.parts.size());
+    if (sites[part].empty()) {
+      sites[part] = sites_of(model.parts[part]);
+      factors[part].sites.resize(model.parts[part].cells.particles.size(), {1, 1});
+    }
+    put_disc(held.disc, held.particles, model, sites[part], factors[part].sites);
   }
   std::vector<std::size_t> changed;
   for (std::size_t p = 0; p < factors.size(); ++p) {
@@ -127,15 +143,11 @@ void stiffen_hinges(std::size_t number, ClothModel<Real>& model) {
   const ClothPart<Real>& part = model.parts[number];
   const GridCells& cells = part.cells;
   if (cells.row_stiffening.empty() && cells.column_stiffening.empty()) return;
-  std::vector<int> site_of(static_cast<std::size_t>(part.particles.count), 0);
-  for (std::size_t site = 0; site < cells.particles.size(); ++site) {
-    if (cells.particles[site] != kNone)
-      site_of[static_cast<std::size_t>(cells.particles[site])] = static_cast<int>(site);
-  }
+  const std::vector<Index> sites = sites_of(part);
   for (Index n = part.hinges.first; n < part.hinges.end(); ++n) {
     Hinge<Real>& hinge = model.hinges[static_cast<std::size_t>(n)];
     const auto site = [&](int end) {
-      return site_of[static_cast<std::size_t>(hinge.x[end] - part.particles.first)];
+      return sites[static_cast<std::size_t>(hinge.x[end] - part.particles.first)];
     };
     const auto factor = static_cast<Real>(stiffening_between(site(0), site(1), cells));
     hinge.stiffness *= factor;

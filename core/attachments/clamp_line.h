@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/attachments/clamp_disc.h"
@@ -58,10 +59,16 @@ struct ClampLine {
 /// The strip that a clamp across a mesh holds.
 HeldStrip held_strip(const ClampLine& clamp);
 
+/// A disc with the particles that it holds.
+struct HeldDisc {
+  ClampDisc disc;
+  std::span<const Index> particles;
+};
+
 /// What clamps the cloths of a model.
 struct Clamps {
   std::vector<ClampLine> lines;
-  std::vector<ClampDisc> discs;
+  std::vector<HeldDisc> discs;
 };
 
 /// Distance of the lines along an axis of a grid, 0 u, 1 v [m]; 0 if the part is not a grid.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/attachments/constants.h"
 #include "core/error.h"
@@ -52,11 +53,12 @@ double next_opening(const Gripper& gripper, double resistance, double seconds, d
   double step = 2 * gripper.def.closing_speed * seconds;
   if (gripper.wanted >= gripper.opening) return std::min(gripper.wanted, gripper.opening + step);
   if (gripper.gripping) {
-    // Jaws that meet several layers close too far in the tick in which these resist.
-    const double excess = resistance - gripper.force;
-    if (!(excess > 0) || !grips_layers(gripper)) return gripper.opening;
-    const double part = std::min(1.0, excess / std::max(gripper.force, kLeastGrip));
-    return gripper.opening + std::min(step, part * kJawYield * thickest);
+    // Jaws that meet several layers close too far in the tick in which these resist, and layers
+    // that were pressed resist less after a while.
+    if (!grips_layers(gripper)) return gripper.opening;
+    const double excess = (resistance - gripper.force) / std::max(gripper.force, kLeastGrip);
+    step = std::min(step, std::min(std::abs(excess), 1.0) * kJawYield * thickest);
+    return std::max(gripper.opening + std::copysign(step, excess), 2 * gripper.facing);
   }
   if (gripper.opening < kJawNearOpening * thickest) step = std::min(step, kJawNearStep * thickest);
   double least = gripper.wanted;
@@ -163,9 +165,9 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
       jaw.pace = 1;
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
       jaw.press = press_of(gripper, k);
-      // What layers press back already is part of the force.
-      const double resisted = grips_layers(gripper) ? std::min(resistance, gripper.force) : 0;
-      jaw.squeeze = gripper.gripping ? gripper.force - resisted : 0;
+      jaw.hold = gripper.gripping ? gripper.force : 0;
+      jaw.layered = gripper.gripping && grips_layers(gripper);
+      jaw.squeeze = jaw.hold - (jaw.layered ? std::min(resistance, jaw.hold) : 0);
     }
   }
 }

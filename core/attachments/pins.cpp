@@ -19,11 +19,8 @@ auto find(PinId id, Pins& pins) {
 }  // namespace
 
 bool is_fixed(const Pins& pins, Index particle) {
-  assert(particle >= 0 && static_cast<std::size_t>(particle) < pins.pin_count.size());
-  if (pins.pin_count[static_cast<std::size_t>(particle)] == 0) return false;
-  return std::any_of(pins.list.begin(), pins.list.end(), [particle](const Pin& pin) {
-    return !pin.path && std::binary_search(pin.particles.begin(), pin.particles.end(), particle);
-  });
+  assert(particle >= 0 && static_cast<std::size_t>(particle) < pins.fixed_count.size());
+  return pins.fixed_count[static_cast<std::size_t>(particle)] > 0;
 }
 
 bool Pins::any_moving() const {
@@ -34,7 +31,7 @@ Clamps clamps_of(const Pins& pins) {
   Clamps clamps;
   for (const Pin& pin : pins.list) {
     if (pin.clamp) clamps.lines.push_back(*pin.clamp);
-    if (pin.disc) clamps.discs.push_back(*pin.disc);
+    if (pin.disc) clamps.discs.push_back({*pin.disc, pin.particles});
   }
   return clamps;
 }
@@ -48,6 +45,7 @@ template <class Real>
 Pins make_pins(const ClothModel<Real>& model) {
   Pins pins;
   pins.pin_count.assign(model.mass.size(), 0);
+  pins.fixed_count.assign(model.mass.size(), 0);
   return pins;
 }
 
@@ -60,11 +58,18 @@ PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
   if (pins.list.size() >= kMostPins)
     throw DefinitionError("pin", std::to_string(pins.list.size() + 1),
                           "at most " + std::to_string(kMostPins) + " pins", "release some first");
+  if (pins.held + held.particles.size() > kMostHeld)
+    throw DefinitionError(
+        "pin", std::to_string(pins.held + held.particles.size()),
+        "at most " + std::to_string(kMostHeld) + " particles of all pins together",
+        "give it a smaller radius, or release some first");
+  pins.held += held.particles.size();
   Pin pin{pins.next_id++, def,        held.centre, std::move(held.particles), {},
           Vec3d::Zero(),  held.clamp, held.disc};
   for (const Index i : pin.particles) {
     const auto p = static_cast<std::size_t>(i);
     ++pins.pin_count[p];
+    ++pins.fixed_count[p];
     state.inverse_mass[p] = 0;
     state.v[p].setZero();
   }
@@ -90,7 +95,7 @@ bool move_pin(const ClothModel<Real>& model, PinId id, const PinMove& move, Pins
   found->path = std::move(path);
   for (const Index i : found->particles) {
     const auto p = static_cast<std::size_t>(i);
-    if (!is_fixed(pins, i)) state.inverse_mass[p] = Real(1) / model.mass[p];
+    if (--pins.fixed_count[p] == 0) state.inverse_mass[p] = Real(1) / model.mass[p];
   }
   return true;
 }
@@ -101,6 +106,7 @@ bool stop_pin(PinId id, Pins& pins, ClothState<Real>& state) {
   if (found == pins.list.end()) return false;
   if (!found->path) return true;
   for (const Index i : found->particles) {
+    ++pins.fixed_count[static_cast<std::size_t>(i)];
     state.inverse_mass[static_cast<std::size_t>(i)] = 0;
     state.v[static_cast<std::size_t>(i)].setZero();
   }
@@ -113,11 +119,15 @@ bool remove_pin(const ClothModel<Real>& model, PinId id, Pins& pins, ClothState<
   const auto found = find(id, pins);
   if (found == pins.list.end()) return false;
   const std::vector<Index> particles = std::move(found->particles);
+  const bool rested = !found->path;
   pins.list.erase(found);
+  assert(pins.held >= particles.size());
+  pins.held -= particles.size();
   for (const Index i : particles) {
     const auto p = static_cast<std::size_t>(i);
-    assert(pins.pin_count[p] > 0);
+    assert(pins.pin_count[p] > 0 && pins.fixed_count[p] >= (rested ? 1 : 0));
     --pins.pin_count[p];
+    if (rested) --pins.fixed_count[p];
     if (!is_fixed(pins, i)) state.inverse_mass[p] = Real(1) / model.mass[p];
   }
   return true;

@@ -56,28 +56,34 @@ struct Pin {
 /// All pins of a cloth. Overlapping pins are counted: a particle is free when its last pin is
 /// removed.
 struct Pins {
-  std::vector<Pin> list;       ///< in order of creation
-  std::vector<int> pin_count;  ///< for each particle
+  std::vector<Pin> list;         ///< in order of creation
+  std::vector<int> pin_count;    ///< for each particle
+  std::vector<int> fixed_count;  ///< of those that rest
+  std::size_t held = 0;          ///< particles of all pins together, each counted for each pin
   PinId next_id = 1;
 
   /// Whether any pin is moving.
   bool any_moving() const;
 };
 
-/// The clamps of all pins.
+/// The clamps of all pins, which refer to these.
 Clamps clamps_of(const Pins& pins);
 
 /// Whether a resting pin holds a particle.
 bool is_fixed(const Pins& pins, Index particle);
 
 inline constexpr std::size_t kMostPins = 4096;
+/// Most particles of all pins of a world together. What pins cost, and the memory of them in each
+/// copy of a world, goes with these.
+inline constexpr std::size_t kMostHeld = 1'000'000;
 
 /// Sizes the counters for a cloth without pins.
 template <class Real>
 Pins make_pins(const ClothModel<Real>& model);
 
 /// Pins particles at their present positions with zero velocity.
-/// Throws DefinitionError if the place does not exist or there are too many pins.
+/// Throws DefinitionError if the place does not exist, or there are too many pins or they hold too
+/// many particles.
 template <class Real>
 PinId add_pin(const ClothModel<Real>& model, const PinDef& def, Pins& pins,
               ClothState<Real>& state);

@@ -32,7 +32,7 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
   const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace);
   feed(hash, own.data(), own.size());
   if (state.overload > 0) feed(hash, &state.overload, 1);
-  if (state.squeeze > 0) feed(hash, &state.impulse, 1);  // to which the jaw may yield
+  if (state.hold > 0) feed(hash, &state.impulse, 1);  // to which the jaw may yield
   if (!state.move) return;
   const auto wanted = numbers_of(state.move->target, state.move->speed, state.move->turn_speed);
   feed(hash, wanted.data(), wanted.size());

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 
 #include "core/attachments/grabs.h"
@@ -118,6 +119,8 @@ class World {
 
   PinId pin(const PinDef& def);
   bool unpin(PinId id);
+  /// Several at once, for about the cost of one; ids of none are passed over.
+  void unpin(std::span<const PinId> ids);
 
   /// Sends a pin to a target, with bounded speed and force.
   /// Throws DefinitionError if a field is out of range. False if there is no such pin.

@@ -35,11 +35,22 @@ PinId World<Real>::hold(const PinDef& def) {
 
 template <class Real>
 bool World<Real>::unpin(PinId id) {
-  wake_held(id);
-  if (!remove_pin(model_, id, pins_, state_)) return false;
+  const bool known = std::any_of(pins_.list.begin(), pins_.list.end(),
+                                 [id](const Pin& pin) { return pin.id == id; });
+  unpin(std::span(&id, 1));
+  return known;
+}
+
+template <class Real>
+void World<Real>::unpin(std::span<const PinId> ids) {
+  bool any = false;
+  for (const PinId id : ids) {
+    wake_held(id);
+    any = remove_pin(model_, id, pins_, state_) || any;
+  }
+  if (!any) return;
   masses_changed();
   renew_clamps();
-  return true;
 }
 
 /// Bends cloth at the borders of pinned strips as if clamped there. The factors are constants of
@@ -319,6 +330,7 @@ int World<Real>::debug_tree_levels(const std::string& tree) {
   template void World<Real>::renew_clamps();                                            \
   template void World<Real>::restore_hinges(std::size_t);                               \
   template bool World<Real>::unpin(PinId);                                              \
+  template void World<Real>::unpin(std::span<const PinId>);                             \
   template bool World<Real>::move_pin(PinId, const PinMove&);                           \
   template bool World<Real>::stop_pin(PinId);                                           \
   template void World<Real>::finish_pins();                                             \

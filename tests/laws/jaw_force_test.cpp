@@ -27,6 +27,34 @@ void close(World<float>& world) {
   REQUIRE(world.command_gripper(0, command));
 }
 
+/// Two sheets of 20 cm that hang between jaws along their upper edge, held at the lower one too.
+/// @param load  their weight over what friction with both jaws holds [1]
+WorldDef two_hanging_sheets(double load) {
+  constexpr double kForce = 5, kFriction = 0.3;
+  WorldDef def = test::empty_world(test::flat_cloth(13, 13, 0.2, 0.2));
+  ClothDef sheet = def.cloths[0];
+  sheet.fabric.thickness = 2e-3;
+  sheet.fabric.friction = kFriction;
+  sheet.fabric.areal_density = load * 2 * kFriction * kForce / (2 * 0.2 * 0.2 * 9.81);
+  def.cloths.clear();
+  for (int k = 0; k < 2; ++k) {
+    sheet.name = "sheet" + std::to_string(k);
+    sheet.origin = Vec3d(-0.1, 1, (k - 0.5) * 2.01e-3);
+    sheet.v = -Vec3d::UnitY();
+    def.cloths.push_back(sheet);
+    PinDef pin;
+    pin.place = EdgeStrip{Side::bottom, 0};
+    pin.cloth = sheet.name;
+    def.pins.push_back(pin);
+  }
+  def.contact.seed.self = SelfContact::guard;
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.environment.damping = 1;
+  def.grippers = {jaws_at(Vec3d(0, 0.98, 0), 0.02, kForce)};
+  def.grippers[0].half_extents[2] = 0.11;
+  return def;
+}
+
 }  // namespace
 
 TEST_CASE("jaws press any number of layers with their force, to 15 % after 3 s") {
@@ -101,5 +129,24 @@ TEST_CASE("a pin and jaws carry a cloth's weight and nothing across, wherever th
                       << sum[2] << " N");
       CHECK((sum - Vec3d(0, weight, 0)).norm() < 0.002 * weight);
     }
+  }
+}
+
+TEST_CASE("jaws hold two layers at 0.9 of what friction with both allows, and not at 1.1") {
+  for (const double load : {0.5, 0.9, 1.1}) {
+    World<float> world(two_hanging_sheets(load));
+    close(world);
+    test::advance(world, 1);
+    REQUIRE(world.grippers()[0].gripping);
+    while (!world.pins().list.empty()) world.unpin(world.pins().list.front().id);
+    test::advance(world, 2);
+    const double before = test::centre_of_mass(world)[1];
+    test::advance(world, 3);
+    const double slipped = before - test::centre_of_mass(world)[1];
+    INFO("load " << load << " slips by " << slipped << " m in 3 s");
+    if (load < 1)
+      CHECK(std::abs(slipped) < 2e-4);
+    else
+      CHECK(slipped > 0.01);
   }
 }

@@ -39,6 +39,19 @@ double surface_speed(const ColliderState& state) {
   return state.wanted.linear.norm() + (turn > 0 ? turn * state.radius : 0);
 }
 
+/// Pace in the next tick. What layers resist with grows on while an object stands before them: it
+/// yields until they resist with its force. Jaws yield by their opening.
+/// @param resistance  over its force [1]
+double next_pace(const ColliderState& state, double resistance, double seconds) {
+  const double pace = std::max(state.pace, 0.0);
+  if (!(resistance > 1))
+    return std::min(1.0, pace + kPaceGain * seconds * (1 - std::max(0.0, resistance)));
+  const double slowed = pace / (1 + (resistance - 1) * std::min(seconds / kPaceSeconds, 1.0));
+  if (slowed >= kLeastColliderPace) return slowed;
+  if (!state.press.isZero(0)) return 0;
+  return -std::min(1.0, std::min(resistance - 1, 1.0) * kYieldSpeed / surface_speed(state));
+}
+
 void clear_impulses(ColliderState& state) {
   for (Vec3d* sum : {&state.impulse, &state.angular_impulse, &state.counted, &state.angular_counted,
                      &state.squeezed})
@@ -99,7 +112,7 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
   assert(time >= 0 && seconds > 0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
-    assert(state.pace >= 0 && state.pace <= 1);
+    assert(state.pace >= -1 && state.pace <= 1);
     state.start = state.goal = state.pose;
     state.start_overload = state.overload;
     state.wanted = state.twist = {};
@@ -171,12 +184,7 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
     const double work =
         state.impulse.dot(state.wanted.linear) + state.angular_impulse.dot(state.wanted.angular);
     const double resistance = work / (seconds * surface_speed(state));
-    if (resistance > most)
-      state.pace /= 1 + (resistance / most - 1) * std::min(seconds / kPaceSeconds, 1.0);
-    else
-      state.pace += kPaceGain * seconds * (1 - std::max(0.0, resistance) / most);
-    state.pace =
-        state.pace < kLeastColliderPace && resistance > most ? 0 : std::min(state.pace, 1.0);
+    state.pace = next_pace(state, resistance / most, seconds);
   }
 }
 

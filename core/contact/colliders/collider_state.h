@@ -15,7 +15,8 @@ namespace weft {
 struct ColliderState {
   Pose pose;
   std::optional<MoveDef> move;  ///< the command that overrides its keyframes
-  double pace = 1;              ///< fraction of its speed left by the resistance of the cloth, 0..1
+  /// Fraction of its speed left by the resistance of the cloth, -1..1; less than 0: it yields.
+  double pace = 1;
 
   // The running tick.
   Pose start, goal;      ///< at its start; at its end, unless the collider is held back
@@ -30,7 +31,9 @@ struct ColliderState {
 
   // For the jaw of a gripper.
   Vec3d press = Vec3d::Zero();     ///< unit pressing direction; zero: not a jaw
-  double squeeze = 0;              ///< pressing force on the cloth in front of it in this tick [N]
+  double hold = 0;                 ///< force whose friction holds what it grips in this tick [N]
+  bool layered = false;            ///< what it grips are several layers, which resist it
+  double squeeze = 0;              ///< its part that the cloth does not resist yet [N]
   Vec3d squeezed = Vec3d::Zero();  ///< its impulse on the cloth so far in the tick [N s]
   double facing = 0;               ///< thickness of the cloth in front of it; 0: none [m]
 
@@ -47,7 +50,7 @@ struct ColliderState {
 
   bool is_moving() const { return !twist.is_zero(); }
   /// Whether it moves, or is meant to.
-  bool is_active() const { return !wanted.is_zero() || squeeze > 0; }
+  bool is_active() const { return !wanted.is_zero() || hold > 0; }
 };
 
 using ColliderStates = std::vector<ColliderState>;
@@ -87,7 +90,8 @@ bool count_resistance(double seconds, ColliderState& state);
 /// Moves a collider by part of the tick [s]; it ends exactly at its goal.
 void advance_collider(double seconds, double tick_seconds, ColliderState& state);
 
-/// Ends the tick: slows colliders whose resistance exceeds their force.
+/// Ends the tick: slows colliders whose resistance exceeds their force, and lets those that stand
+/// yield to it.
 void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
                    ColliderStates& states);
 

@@ -44,6 +44,10 @@ inline constexpr double kPaceSeconds = 1.0 / 60;
 /// before cloth that resists. Smaller: it creeps on.
 inline constexpr double kLeastColliderPace = 0.01;
 
+/// Speed at which an object yields to twice its force or more, and in proportion to less [m/s].
+/// Larger: it lets go of layers for moments. Smaller: it presses too hard for longer.
+inline constexpr double kYieldSpeed = 0.01;
+
 /// Resistance beyond the force for a shorter time is an impact [s]: its impulse leaves the force no
 /// time to act. Larger: a collider drives deeper into a pile before it is held. Smaller: light
 /// touches hold it.

@@ -124,10 +124,14 @@ inline constexpr double kBounceSpeed = 0.05;
 /// above this [1].
 inline constexpr double kFacing = 0.9;
 
-/// What is nearer than the thickness and this fraction of it is squeezed [1].
+/// Closed jaws grip what is nearer than the thickness and this fraction of it [1].
 inline constexpr double kSqueezed = 0.02;
 
-/// So many contacts of particles with a jaw hold the cloth alone [1]. Larger: more of the squeeze
+/// The same where layers resist the jaws, between which the outer ones shake [1]. Larger: jaws hold
+/// what lies loose between them. Smaller: what shakes is let go of for moments, and creeps out.
+inline constexpr double kSqueezedLayers = 0.3;
+
+/// So many contacts of particles with a jaw hold the cloth alone [1]. Larger: more of the force
 /// lies where jaws end. Smaller: cloth of large cells turns between them.
 inline constexpr int kHoldAlone = 12;
 

@@ -188,7 +188,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     push_out(clearance_.smallest_gap, dt, executor_, rows_, reach_, response_, state);
     aim_rows(solve, shapes_, dt);
     // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
-    if (motion_.any_jaw) share_squeeze(solve, motion_.first_substep ? dt / 2 : dt);
+    if (motion_.any_jaw) share_hold(solve, motion_.first_substep ? dt / 2 : dt);
     solve_rows(solve, dt, guard);
     bounce(solve, guard);
     profile[Stage::friction].work += solve.friction_evaluations;
@@ -244,7 +244,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   if (response_.lone_apart)
     response_.lone = rows_.lone.respond(lone_pass(reach_, state, dt, false), executor_);
   aim_rows(solve, shapes_, dt);
-  if (motion_.any_jaw) share_squeeze(solve, dt / 2);
+  if (motion_.any_jaw) share_hold(solve, dt / 2);
   solve_rows(solve, dt, guard);
   bounce(solve, guard);
   if (guard && !guard->rows().empty()) {

@@ -98,8 +98,8 @@ struct MovingRow {
   double own_offset = 0;             ///< [m]
   Real mobility = 0;                 ///< velocity that an impulse gives the row's point [1/kg]
   Vec3<Real> surface = Vec3<Real>::Zero();  ///< velocity of the object there [m/s]
-  /// Friction that the squeeze of a jaw and what presses besides allow in this step [m/s].
-  Real grip = 0;
+  bool layered = false;  ///< in a jaw that layers resist: their pushes are part of its grip
+  Real grip = 0;  ///< friction that the jaw, and what pushes besides, allow in this step [m/s]
   Vec3<Real> rubbed = Vec3<Real>::Zero();  ///< the part of it that acts [m/s]
 };
 

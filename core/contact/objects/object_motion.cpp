@@ -12,12 +12,12 @@ namespace weft {
 namespace {
 
 /// Objects that have been resisted by more than their force stand in the coming substep, and both
-/// jaws if one does.
+/// jaws if one does. What yields already goes on.
 template <class Real>
 void stop_overloaded(double dt, ColliderStates& colliders, ObjectShapes<Real>& shapes) {
   for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
     ColliderFrame<Real>& frame = shapes.frames[k];
-    if (!frame.tracked || !count_resistance(dt, colliders[k])) continue;
+    if (!frame.tracked || !count_resistance(dt, colliders[k]) || colliders[k].pace < 0) continue;
     frame.rest = std::max(frame.rest, 1);
     if (colliders[k].mate == kNone) continue;
     ColliderFrame<Real>& mate = shapes.frames[at_index(colliders[k].mate)];
@@ -53,7 +53,7 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
     motion.any_jaw = motion.any_jaw || !state.press.isZero(0);
     state.facing = 0;
     // What slips out of jaws goes round their rims, where planes that stay would stop it for ever.
-    rows_go |= state.squeeze > 0;
+    rows_go |= state.hold > 0;
     const double turn = state.twist.angular.norm();
     const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
     motion.surface_speed = std::max(motion.surface_speed, static_cast<Real>(speed));

@@ -70,6 +70,14 @@ bool is_clear(Real span2, Real least, Real most) {
   return least > 0 && least * least - span2 > most * most;
 }
 
+/// Distance from the core of a round object at which a cloth lies on it [m]. Whether particles
+/// alone carry the cloth is decided by it, not by where they are: what edges have lifted would be
+/// carried by its particles, fall back on its edges, and so gain energy.
+template <class Real>
+Real height_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& source, Index particle) {
+  return rod.radius + thickness_at(source.cloths, particle);
+}
+
 /// Distance of each active particle from the core of a round object, now and while the rows hold: a
 /// particle within reach of the object is kept over a plane.
 template <class Real>
@@ -126,7 +134,7 @@ void add_edges_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& sou
     const Vec3d normal = in_double(barrier.normal);
     barrier.top = std::max(normal.dot(base), normal.dot(tip)) + static_cast<double>(rod.radius);
     const bool carried =
-        ends.as_lying(kEdgeSpan, Real(0)).clear(nearest(scratch.core, e), rod.radius);
+        ends.as_lying(kEdgeSpan, Real(0)).clear(height_on(rod, source, e[0]), rod.radius);
     const Real s = static_cast<Real>(c.s);
     add_row(source, {e[0], e[1]}, {Real(1) - s, s, 0}, barrier, rod.collider,
             !carried && between_ends(c.s), rows);
@@ -171,7 +179,7 @@ std::uint64_t add_triangles_on(const RoundObject<Real>& rod, const ObjectRowSour
     const auto is_barred = [&](Index i) { return is_inside(i, rod.collider, scratch.inside); };
     if (std::any_of(t.begin(), t.end(), is_barred)) continue;
     const bool responds =
-        !corners.as_lying(kTriangleSpan, Real(0)).clear(nearest(scratch.core, t), rod.radius);
+        !corners.as_lying(kTriangleSpan, Real(0)).clear(height_on(rod, source, t[0]), rod.radius);
     const auto add = [&](const Vec3<Real>& centre) {
       ++tests;
       add_triangle_row(source, t, corners.reach, rod, centre, responds, rows);

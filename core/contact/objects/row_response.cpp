@@ -69,16 +69,15 @@ void note_impact(ObjectSolve<Real>& solve, std::size_t r) {
   bounces.impacts.push_back({r, -restitution * speed, 0});
 }
 
-/// Friction on a row that a jaw squeezes: what of the step's friction acts may change with each
-/// sweep, up and down, and is at most what is allowed in all. So no sweep uses up what a later one
-/// needs.
+/// Friction on a row that a jaw grips: what of the step's friction acts may change with each sweep,
+/// up and down, and is at most what is allowed in all. So no sweep uses up what a later one needs.
 /// @param slip     velocity along the plane [m/s]
 /// @param allowed  what is allowed besides from now on [m/s]
 /// @return the change of the velocity [m/s]
 template <class Real>
 Vec3<Real> rub_in_jaw(const Vec3<Real>& slip, Real allowed, MovingRow<Real>& moving) {
   assert(moving.grip > 0 && allowed >= 0);
-  moving.grip += allowed;
+  if (!moving.layered) moving.grip += allowed;
   Vec3<Real> rubbed = moving.rubbed - slip;
   if (const Real size = rubbed.norm(); size > moving.grip) rubbed *= moving.grip / size;
   const Vec3<Real> change = rubbed - moving.rubbed;
@@ -88,7 +87,7 @@ Vec3<Real> rub_in_jaw(const Vec3<Real>& slip, Real allowed, MovingRow<Real>& mov
 
 /// Pushes a row's point. Friction: the tangential velocity is stopped if that takes at most
 /// friction times the normal impulse, else slowed by as much (Coulomb; eq. (10) of the seed). What
-/// jaws squeeze has besides the normal impulses that cancel there, and their friction does not.
+/// jaws hold has besides the normal impulses that cancel there, and their friction does not.
 /// @param v,vn  velocity of the point over the object, and along the normal [m/s]
 /// @param push     change of the latter [m/s]
 /// @param pressed  how much of that is pressure that rubs [m/s]
@@ -107,7 +106,7 @@ Vec3<Real> respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v,
     const Real allowed = friction * pressed;
     if (moving && moving->grip > 0) {
       change += rub_in_jaw(slip, allowed, *moving);
-    } else {
+    } else if (!moving || !moving->layered) {
       const Real speed = slip.norm();
       change -= speed > allowed ? (slip * (allowed / speed)).eval() : slip;
     }
@@ -126,7 +125,7 @@ struct RowChange {
   Vec3<Real> change = Vec3<Real>::Zero();  ///< of the velocity of its point [m/s]
 };
 
-/// Lets a row respond if it lacks normal velocity, or is squeezed and may rub.
+/// Lets a row respond if it lacks normal velocity, or is gripped and may rub.
 /// @param rubs  whether what pushes it adds to its friction
 template <class Real>
 RowChange<Real> solve_row(ObjectSolve<Real>& solve, std::size_t r, bool rubs = true) {
@@ -152,7 +151,7 @@ std::span<const Index> particles_of(const auto& row) {
 /// Sweeps on where jaws hold cloth, over the rows whose particles the last sweep has changed. The
 /// cloth between two jaws and round their rims is stopped from both sides; what the usual sweeps
 /// leave of that would shake it all the time, and shaken cloth creeps out. What they push from both
-/// sides is part of the squeeze, whose friction is shared, and adds none.
+/// sides is part of the jaws' force, whose friction is shared, and adds none.
 template <class Real>
 void settle_between_jaws(ObjectSolve<Real>& solve) {
   const auto is_of_jaw = [&solve](std::size_t collider) {

@@ -98,9 +98,9 @@ void push_out(Real smallest_gap, Real dt, Executor* executor, ObjectRows<Real>& 
 template <class Real>
 void aim_rows(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real dt);
 
-/// Shares the squeeze of each jaw as friction among the rows that touch it.
+/// Shares what each jaw holds with as friction among the rows that touch it.
 template <class Real>
-void share_squeeze(ObjectSolve<Real>& solve, Real dt);
+void share_hold(ObjectSolve<Real>& solve, Real dt);
 
 /// One sweep of projected Gauss-Seidel.
 /// @param again  nothing but these rows has changed a velocity since the last sweep: lone ones have

@@ -264,3 +264,64 @@ TEST_CASE("a disc of less than three cells holds the particles within it alone")
   CHECK_FALSE(held.disc);
   CHECK(held.particles == particles_in_disc(model, held.centre, 0.059));
 }
+
+TEST_CASE("pins that are released together leave what they leave one by one, moving ones too") {
+  WorldDef def;
+  def.cloths[0] = test::flat_cloth(21, 17);
+  def.cloths[0].fabric.bending_warp = def.cloths[0].fabric.bending_weft = 1e-4;
+  for (const double u : {0.1, 0.3, 0.5, 0.7}) def.pins.push_back({MaterialPoint{u, 0.4}, 0.25, {}});
+  def.pins.push_back({EdgeStrip{Side::top, 0.1}, 0, {}});
+  const auto left = [&](bool together) {
+    World<float> world(def);
+    PinMove move;
+    move.target = Vec3d(0, 3, 0);
+    world.move_pin(world.pins().list[1].id, move);
+    world.step();
+    const std::vector<PinId> ids = {world.pins().list[0].id, world.pins().list[1].id,
+                                    world.pins().list[4].id};
+    if (together)
+      world.unpin(ids);
+    else
+      for (const PinId id : ids) CHECK(world.unpin(id));
+    CHECK(world.pins().list.size() == 2);
+    for (int t = 0; t < 5; ++t) world.step();
+    return world.hash();
+  };
+  CHECK(left(true) == left(false));
+}
+
+TEST_CASE("a particle is free once no pin that rests holds it, whatever moves, stops and goes") {
+  const ClothModel<double> model = build_cloth<double>(test::flat_cloth(5, 5));
+  ClothState<double> state = initial_state(model);
+  Pins pins = make_pins(model);
+  const PinId a = add_pin(model, {12, 10.0, {}}, pins, state),
+              b = add_pin(model, {12, 0.0, {}}, pins, state);
+  CHECK(pins.held == 26);
+  const auto is_free = [&](std::size_t i) { return state.inverse_mass[i] > 0; };
+  CHECK_FALSE(is_free(3));
+  move_pin(model, a, PinMove{}, pins, state);
+  CHECK(is_free(3));
+  CHECK_FALSE(is_free(12));
+  move_pin(model, b, PinMove{}, pins, state);
+  CHECK(is_free(12));
+  stop_pin(b, pins, state);
+  CHECK_FALSE(is_free(12));
+  remove_pin(model, b, pins, state);
+  CHECK(is_free(12));
+  stop_pin(a, pins, state);
+  CHECK_FALSE(is_free(12));
+  remove_pin(model, a, pins, state);
+  CHECK(is_free(3));
+  CHECK(pins.held == 0);
+}
+
+TEST_CASE("pins together hold a bounded number of particles") {
+  const ClothModel<double> model = build_cloth<double>(test::flat_cloth(250, 200, 2, 2));
+  ClothState<double> state = initial_state(model);
+  Pins pins = make_pins(model);
+  for (std::size_t k = 0; k < kMostHeld / 50000; ++k) add_pin(model, {0, 100.0, {}}, pins, state);
+  CHECK_THROWS_AS(add_pin(model, {0, 0.0, {}}, pins, state), DefinitionError);
+  CHECK(pins.list.size() == kMostHeld / 50000);
+  remove_pin(model, pins.list.front().id, pins, state);
+  add_pin(model, {0, 0.0, {}}, pins, state);
+}
