@@ -31,7 +31,7 @@ inline constexpr double kOrderSlice = 0.1;
 
 /// A hand of a viewer that is no operator holds at most one part in kHoldsBeside of the particles
 /// of a cloth that it shares, or kNarrowHold of them if that is more. Larger part: one hand takes
-/// the cloth from all others. Smaller: who wants to hold much needs several hands.
+/// the cloth from all others. Smaller: to hold much of it takes several hands.
 inline constexpr std::size_t kHoldsBeside = 4, kNarrowHold = 64;
 
 /// A cheaper command than this costs its viewer nothing [s of CPU]. After a more expensive one its

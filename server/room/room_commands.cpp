@@ -86,7 +86,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
   const GrabDef def = grab_def(*world_, command, *point);
   const Viewer& self = viewers_.at(viewer);
   const Index particle = nearest_corner(*world_, *point);
-  // Who leads takes hold beside the hands of others.
+  // An operator by its token takes hold beside the hands of others.
   if (auto error = check_free(holds_, *world_, viewer, particle); error && !leads(self))
     return *std::move(error);
   const bool shares = self.info.role == proto::Role::viewer && viewers() > 1;

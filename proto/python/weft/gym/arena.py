@@ -68,7 +68,7 @@ class Arena:
         self.frame: Frame | None = None  # the last that was observed
         self._scene, self._prepare = scene, prepare
         self._epoch = 0  # of the mesh of its scene
-        self._refused: list[CommandError] = []  # what the server said to commands whose answer nobody awaits
+        self._refused: list[CommandError] = []  # of commands whose answers are not awaited
         client.on("refused", self._refused.append)
 
     async def set_up(self, *, forked: bool = False) -> None:

@@ -64,7 +64,7 @@ class VectorClothEnv(VectorEnv):
         ticks = whole("ticks", ticks, 1, MOST_TICKS)
         self._url, self._reward, self._finished, self._randomise = url, reward, finished, randomise
         self._names = (f"{rooms}-{k}" for k in itertools.count())
-        self._rooms: dict[str, Client | None] = {}  # that were made here, and who is in them
+        self._rooms: dict[str, Client | None] = {}  # that were made here, with the client in each
         self._chances = [np.random.default_rng() for _ in range(num_envs)]
         self._arenas: list[Arena] = []
         self._steps, self._over = np.zeros(num_envs, int), np.zeros(num_envs, bool)
