@@ -63,7 +63,7 @@ void put_disc(const ClampDisc& disc, std::span<const Index> held, const ClothMod
   assert(factors.size() == part.cells.particles.size());
   for (const Index particle : held) {
     const std::array<double, 2> place = place_of(model, particle);
-    if (!disc.holds(place)) continue;
+    assert(disc.holds(place));
     const Index site = sites[static_cast<std::size_t>(particle - part.particles.first)];
     for (std::size_t axis = 0; axis < 2; ++axis) {
       const double along = place[axis] - disc.middle[axis];

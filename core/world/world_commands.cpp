@@ -35,10 +35,9 @@ PinId World<Real>::hold(const PinDef& def) {
 
 template <class Real>
 bool World<Real>::unpin(PinId id) {
-  const bool known = std::any_of(pins_.list.begin(), pins_.list.end(),
-                                 [id](const Pin& pin) { return pin.id == id; });
+  const std::size_t before = pins_.list.size();
   unpin(std::span(&id, 1));
-  return known;
+  return pins_.list.size() < before;
 }
 
 template <class Real>

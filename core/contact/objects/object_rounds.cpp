@@ -78,8 +78,8 @@ Real height_on(const RoundObject<Real>& rod, const ObjectRowSource<Real>& source
   return rod.radius + thickness_at(source.cloths, particle);
 }
 
-/// Distance of each active particle from the core of a round object, now and while the rows hold: a
-/// particle within reach of the object is kept over a plane.
+/// Distance of each active particle from the core of a round object while the rows hold: a particle
+/// within reach of the object is kept over a plane.
 template <class Real>
 void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>& rod,
                    Executor* executor, RowScratch<Real>& scratch) {
@@ -87,14 +87,13 @@ void measure_cores(const ObjectRowSource<Real>& source, const RoundObject<Real>&
   const Vec3<Real>&a = rod.a, &b = rod.b;
   const Real radius = rod.radius;
   const Real rounding = radius * std::numeric_limits<Real>::epsilon() * Real(kCoreRoundings);
-  scratch.core.resize(state.x.size());
   scratch.least_core.resize(state.x.size());
   const std::vector<Index>& near = source.near.particles;
   const auto measure = [&](Index k) {
     const auto i = at_index(k);
-    Real &core = scratch.core[i], &least = scratch.least_core[i];
+    Real& least = scratch.least_core[i];
     const Vec3<Real> from = state.x[i] - a;
-    core = (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
+    const Real core = (from - (b - a) * closest_on_segment(state.x[i], a, b)).norm();
     least = core - source.reach[i] - source.cloths.thickness * Real(kRoomForPush);
     if (state.inverse_mass[i] > 0 && core > radius)
       least = std::max(

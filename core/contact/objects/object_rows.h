@@ -97,8 +97,8 @@ struct RowScratch {
   /// Of the near ones: no point of one is farther from its nearest corner, squared, even when
   /// pushed; a cheap bound for round objects [m^2].
   std::vector<Real> edge_spans2, triangle_spans2;
-  /// Distance of active particles from the core of a round object, and what they keep of it [m].
-  std::vector<Real> core, least_core;
+  /// Distance from the core of a round object that active particles keep while the rows hold [m].
+  std::vector<Real> least_core;
   std::array<ObjectRowPart<Real>, kMostParts> parts;
 };
 
