@@ -87,11 +87,10 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
   const Viewer& self = viewers_.at(viewer);
   const Index particle = nearest_corner(*world_, *point);
   // An operator by its token takes hold beside the hands of others.
-  if (auto error = check_free(holds_, *world_, viewer, particle); error && !leads(self))
-    return *std::move(error);
+  auto error = leads(self) ? std::nullopt : check_free(holds_, *world_, viewer, particle);
   const bool shares = self.info.role == proto::Role::viewer && viewers() > 1;
-  if (auto error = check_width(*world_, particle, def.radius); error && shares)
-    return *std::move(error);
+  if (!error && shares) error = check_width(*world_, particle, def.radius);
+  if (error) return *std::move(error);
   const GrabId grab = world_->grab(def);
   holds_.add({grab, viewer, command.drag, clock_()});
   change(&News::grabs);
