@@ -25,6 +25,7 @@ inline constexpr Range kMoveSpeedRange{1e-3, 20};  ///< of a collider, gripper o
 inline constexpr Range kTurnSpeedRange{1e-3, 60};  ///< of a collider or gripper [rad/s]
 inline constexpr Range kOpeningRange{0, 1};        ///< between a gripper's jaws [m]
 inline constexpr Range kGripRange{0, 1000};        ///< force of each jaw [N]
+inline constexpr Range kFrictionFactorRange{0, 10};  ///< of an object, times that of cloth
 
 // Gravity and air.
 inline constexpr Range kGravityRange{-1000, 1000};   ///< each component [m/s^2]

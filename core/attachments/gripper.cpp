@@ -76,6 +76,7 @@ std::array<ColliderDef, 2> jaws_of(const GripperDef& def) {
     jaws[k].shape =
         BoxDef{def.centre + offset_of_jaw(def, k, def.opening), def.half_extents, def.orientation};
     jaws[k].max_force = def.max_force;
+    jaws[k].friction_factor = def.friction_factor;
   }
   return jaws;
 }

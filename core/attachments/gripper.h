@@ -33,6 +33,7 @@ struct GripperDef {
   double speed = 0.25;                  ///< limit of its middle [m/s], 0.001 to 20
   double turn_speed = 2;                ///< limit about its middle [rad/s], 0.001 to 60
   double closing_speed = 0.05;          ///< of each jaw [m/s], 0.001 to 1
+  double friction_factor = 1;           ///< of the jaws, see ColliderDef; 0 to 10
   std::vector<GripperStep> steps = {};  ///< its schedule; at most kMostGripperSteps
 };
 
@@ -104,6 +105,8 @@ void visit_fields_of_gripper(Def& gripper, Visitor&& visit) {
         gripper.turn_speed);
   visit(FieldInfo{"closing_speed", 1e-3, 1, "m/s", "closing speed of each jaw"},
         gripper.closing_speed);
+  visit(FieldInfo{"friction_factor", kFrictionFactorRange, "", "of the jaws, times the cloth's"},
+        gripper.friction_factor);
 }
 
 /// The same for a step, except its rotation.

@@ -175,6 +175,17 @@ void validate_grippers(const WorldDef& def) {
                           "set contact.model to weft");
 }
 
+/// The seed's contact knows one coefficient of friction for each cloth.
+void validate_friction_factors(const WorldDef& def) {
+  if (contact_of(def) == ContactModel::certified) return;
+  for (std::size_t k = 0; k < def.colliders.size(); ++k) {
+    if (def.colliders[k].friction_factor == 1) continue;
+    throw DefinitionError("colliders[" + std::to_string(k) + "].friction_factor",
+                          number_text(def.colliders[k].friction_factor), "1 with this contact",
+                          "set contact.model to weft");
+  }
+}
+
 void validate(const WorldDef& def) {
   check_field("", {"cloths", 1, kMostCloths, "", "number of cloths"},
               static_cast<double>(def.cloths.size()));
@@ -220,6 +231,7 @@ void validate(const WorldDef& def) {
                           "it points from the target towards the eye");
   validate(def.environment);
   validate_grippers(def);
+  validate_friction_factors(def);
   validate_script(def);
 }
 

@@ -204,7 +204,11 @@ bool is_seed_contact(const Json& scene) {
 
 void keep_contact(Json& scene) {
   const bool seed = is_seed_contact(scene);
-  if (seed) scene.erase("grippers");
+  if (seed) {
+    scene.erase("grippers");
+    if (scene.contains("colliders"))
+      for (Json& collider : scene["colliders"]) collider.erase("friction_factor");
+  }
   if (!scene.contains("contact")) return;
   Json& contact = scene["contact"];
   const std::string self = contact.value("self", "automatic");

@@ -1,8 +1,12 @@
 #include <catch2/catch.hpp>
 
+#include <array>
+#include <cmath>
+#include <utility>
+
 #include "tests/support/worlds.h"
 
-// The force of an object that presses cloth on the ground.
+// The force of an object that presses cloth on another object, and what it holds by that.
 
 using namespace weft;
 
@@ -35,7 +39,140 @@ WorldDef plate_on_layers(int layers, double thickness, double max_force) {
   return def;
 }
 
+struct Pressed {
+  int particles = 13;        ///< a side
+  double thickness = 1e-3;   ///< [m]
+  double max_force = 5;      ///< of the object [N]
+  bool finger = false;       ///< a ball of 1 cm in place of a plate of 10 cm
+  bool on_table = false;     ///< a box in place of the ground
+  double friction = 0.4;     ///< with the ground
+  double factor = 1;         ///< of the object, times that
+  Vec3d gravity = Vec3d(0, -9.81, 0);  ///< [m/s^2]
+};
+
+/// A sheet of 20 cm and 8 g on the ground, and an object 4 cm above it.
+WorldDef pressed_sheet(const Pressed& c) {
+  WorldDef def = test::empty_world(test::flat_cloth(c.particles, c.particles, 0.2, 0.2));
+  ClothDef& sheet = def.cloths[0];
+  sheet.fabric.thickness = c.thickness;
+  sheet.fabric.friction = c.friction;
+  sheet.fabric.areal_density = 0.2;
+  sheet.origin = Vec3d(-0.1, c.thickness + 1e-5, -0.1);
+  sheet.v = Vec3d::UnitZ();
+  def.environment.gravity = c.gravity;
+  def.environment.damping = 1;
+  ColliderDef ground, object;
+  ground.name = "ground";
+  ground.shape = PlaneDef{Vec3d::Zero(), Vec3d::UnitY()};
+  if (c.on_table) ground.shape = BoxDef{Vec3d(0, -0.1, 0), Vec3d(0.3, 0.1, 0.3)};
+  object.name = "object";
+  const double half = c.finger ? 0.01 : 0.02;
+  const Vec3d start(0.003, half + 0.04, 0.002);  // in the middle of no cell
+  object.shape = BoxDef{start, Vec3d(0.05, half, 0.05)};
+  if (c.finger) object.shape = SphereDef{start, half};
+  object.max_force = c.max_force;
+  object.friction_factor = c.factor;
+  def.colliders = {ground, object};
+  return def;
+}
+
+/// Sends the object down through the ground, which takes less than a second.
+void press(World<float>& world) {
+  world.measure_forces(true);
+  MoveDef down;
+  down.target.position = Vec3d(0.003, 0, 0.002);
+  down.speed = 0.1;
+  REQUIRE(world.move_collider(1, down));
+  test::advance(world, 1);
+}
+
+/// Mean forces on the ground and the object in some ticks [N].
+std::array<Vec3d, 2> mean_forces(World<float>& world, int ticks) {
+  std::array<Vec3d, 2> mean = {Vec3d::Zero(), Vec3d::Zero()};
+  for (int t = 0; t < ticks; ++t) {
+    world.step();
+    for (std::size_t k = 0; k < 2; ++k) mean[k] += world.reactions()->colliders[k] / ticks;
+  }
+  return mean;
+}
+
 }  // namespace
+
+TEST_CASE("an object presses a single layer on another with its force, and does not thin it") {
+  for (const Pressed& c :
+       {Pressed{}, Pressed{33, 5e-4, 50}, Pressed{13, 2e-3, 1, true}, Pressed{33, 1e-3, 5, true, true},
+        Pressed{20, 1e-3, 20, false, true}}) {
+    World<float> world(pressed_sheet(c));
+    press(world);
+    const double weight = 0.008 * 9.81;
+    const auto [ground, object] = mean_forces(world, 10);
+    INFO(c.particles << " particles a side, " << c.max_force << " N");
+    CHECK(object[1] == Approx(c.max_force).epsilon(0.02));
+    CHECK(ground[1] == Approx(-c.max_force - weight).epsilon(0.02));
+    for (const ContactPoint& contact : world.reactions()->contacts)
+      CHECK(contact.gap > 0.95 * c.thickness);
+    MoveDef up;
+    up.target.position = Vec3d(0, 0.2, 0);
+    REQUIRE(world.move_collider(1, up));
+    test::advance(world, 0.2);
+    CHECK(world.reactions()->colliders[1].norm() == 0);
+    CHECK(world.reactions()->colliders[0][1] == Approx(-weight).epsilon(0.02));
+  }
+}
+
+TEST_CASE("a layer that is pressed is held at 0.9 of what friction on both sides allows") {
+  for (const bool finger : {false, true}) {
+    for (const double load : {0.9, 1.1}) {
+      Pressed c;
+      c.finger = finger;
+      c.max_force = 2;
+      c.friction = 0.1;
+      World<float> world(pressed_sheet(c));
+      press(world);
+      const double allowed = c.friction * (2 * c.max_force + 0.008 * 9.81);
+      EnvironmentDef pulled = world.environment();
+      pulled.gravity[0] = load * allowed / 0.008;
+      world.set_environment(pulled);
+      const double before = test::centre_of_mass(world)[0];
+      test::advance(world, 0.5);
+      const double moved = test::centre_of_mass(world)[0] - before;
+      INFO((finger ? "finger, " : "plate, ") << load);
+      if (load < 1)
+        CHECK(std::abs(moved) < 3e-3);  // which it stretches by
+      else
+        CHECK(moved > 0.02);
+    }
+  }
+}
+
+TEST_CASE("a layer goes along with that of two surfaces that rubs it more") {
+  for (const bool finger : {false, true}) {
+    for (const auto& [factor, speed] : {std::pair(0.5, 0.1), std::pair(2.0, 0.1), std::pair(2.0, 0.01)}) {
+      Pressed c;
+      c.finger = finger;
+      c.factor = factor;
+      World<float> world(pressed_sheet(c));
+      press(world);
+      const double before = test::centre_of_mass(world)[0];
+      MoveDef along;
+      along.target.position = Vec3d(0.003 + 0.5 * speed, 0, 0.002);
+      along.speed = speed;
+      REQUIRE(world.move_collider(1, along));
+      test::advance(world, 0.25);
+      const double rub = mean_forces(world, 10)[1][0];
+      test::advance(world, 0.5);
+      const double moved = (test::centre_of_mass(world)[0] - before) / (0.5 * speed);
+      INFO((finger ? "finger, " : "plate, ") << factor << " times, " << speed << " m/s");
+      if (factor < 1) {
+        CHECK(std::abs(moved) < 0.1);
+        CHECK(rub == Approx(-factor * c.friction * c.max_force).epsilon(0.05));
+      } else {
+        CHECK(moved == Approx(1).margin(0.15));
+        CHECK(-rub > c.friction * c.max_force);
+      }
+    }
+  }
+}
 
 TEST_CASE("an object that layers resist presses them with its force, to 15 % after 4 s") {
   struct Case {

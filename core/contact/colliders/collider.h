@@ -56,6 +56,7 @@ struct ColliderDef {
   MotionDef motion = {};   ///< keyframes, if it has its own motion
   double max_force = 100;  ///< resistance beyond which it lags [N], 0.01 to 1e6
   bool force = false;      ///< follows its keyframes even if cloth cannot yield; see MoveDef
+  double friction_factor = 1;  ///< times the coefficient of the cloth that touches it, 0 to 10
 };
 
 /// Passes each field of a collider except shape and motion to `visit(info, value)`.
@@ -65,6 +66,9 @@ void visit_fields_of_collider(Def& collider, Visitor&& visit) {
         collider.max_force);
   visit(FieldInfo{"force", 0, 1, "", "it moves on through cloth that cannot yield"},
         collider.force);
+  visit(FieldInfo{"friction_factor", kFrictionFactorRange, "",
+                  "times the friction of the cloth that touches it"},
+        collider.friction_factor);
 }
 
 // Pass each field of a shape except orientations, which are unit quaternions, to `visit(info,

@@ -13,7 +13,8 @@ struct ColliderFrame {
   using Mat3 = Eigen::Matrix<Real, 3, 3>;
 
   Vec3d pivot = Vec3d::Zero();
-  double radius = 0;  ///< of the surface about the pivot [m]
+  double radius = 0;           ///< of the surface about the pivot [m]
+  double friction_factor = 1;  ///< of the collider
 
   Pose pose;
   bool displaced = false;            ///< not as defined; otherwise nothing below is used

@@ -52,6 +52,25 @@ double next_pace(const ColliderState& state, double resistance, double seconds) 
   return -std::min(1.0, std::min(resistance - 1, 1.0) * kYieldSpeed / surface_speed(state));
 }
 
+/// What is left of the step towards its goal of an object that pinches a layer against another one
+/// [m]: it goes no farther that way, but back to where the layer has its thickness, and presses with
+/// its force as long as its goal lies there. It moves on along the layer. Where layers beside resist
+/// with its force it does not press besides.
+/// @param seconds  of the last tick, whose impulses the state still has
+Vec3d step_along_pinch(const Vec3d& step, double seconds, ColliderState& state) {
+  assert(!state.is_jaw() && seconds > 0);
+  const double into = step.dot(state.pinch);
+  const double resistance = std::max(0.0, state.impulse.dot(state.pinch) / seconds);
+  const bool presses =
+      into > kPressingDepth && resistance < state.max_force && !state.forced;
+  state.press = presses ? state.pinch : Vec3d::Zero();
+  state.hold = presses ? state.max_force : 0;
+  state.squeeze = presses ? state.max_force - resistance : 0;
+  const double back = std::clamp(state.pinch_lack / 2, 0.0, kYieldSpeed * seconds);
+  state.forget_pinch();
+  return presses ? Vec3d(step - state.press * (into + back)) : step;
+}
+
 void clear_impulses(ColliderState& state) {
   for (Vec3d* sum : {&state.impulse, &state.angular_impulse, &state.counted, &state.angular_counted,
                      &state.squeezed})
@@ -117,25 +136,29 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     state.start_overload = state.overload;
     state.wanted = state.twist = {};
     state.progress = 0;
-    state.blocked = false;
     state.forced = state.move ? state.move->force : colliders[k].force;
-    clear_impulses(state);
+    state.bracing = state.braces;
     const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
+    const Vec3d step = wish ? Vec3d(wish->goal.position - state.pose.position) : Vec3d::Zero();
+    Vec3d left = state.is_jaw() ? step : step_along_pinch(step, seconds, state);
+    clear_impulses(state);
+    state.blocked = !state.is_jaw() && !state.press.isZero(0);
     if (!wish) continue;
-    const Vec3d step = wish->goal.position - state.pose.position;
     const Vec3d turn = rotation_vector(wish->goal.rotation * state.pose.rotation.conjugate());
     // Translation and rotation of a command take the same time, so that the path does not depend on
     // the tick.
-    double fraction = allowed_fraction(step.norm(), wish->speed * seconds);
-    fraction = std::min(fraction, allowed_fraction(turn.norm(), wish->turn_speed * seconds));
-    state.wanted = {step * (fraction / seconds), turn * (fraction / seconds)};
+    const auto fraction_of = [&](const Vec3d& part) {
+      return std::min(allowed_fraction(part.norm(), wish->speed * seconds),
+                      allowed_fraction(turn.norm(), wish->turn_speed * seconds));
+    };
+    const double all = fraction_of(step);
+    state.wanted = {step * (all / seconds), turn * (all / seconds)};
     if (state.wanted.is_zero() || state.forced) state.pace = 1;
-    fraction *= state.pace;
-    state.twist = {step * (fraction / seconds), turn * (fraction / seconds)};
-    if (fraction == 1)
-      state.goal = wish->goal;
-    else
-      state.goal = moved(state.pose, state.twist, seconds);
+    if (state.pace < 0) left = step;  // it yields
+    const double fraction = fraction_of(left) * state.pace;
+    state.twist = {left * (fraction / seconds), turn * (fraction / seconds)};
+    state.goal = fraction == 1 ? wish->goal : moved(state.pose, state.twist, seconds);
+    if (fraction == 1 && state.blocked) state.goal.position = state.pose.position + left;
   }
 }
 
@@ -145,6 +168,7 @@ void take_back_motion(ColliderStates& states) {
     state.overload = state.start_overload;
     state.progress = 0;
     state.blocked = false;
+    state.forget_pinch();
     clear_impulses(state);
   }
 }

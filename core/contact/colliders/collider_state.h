@@ -29,8 +29,14 @@ struct ColliderState {
   Vec3d impulse = Vec3d::Zero();          ///< given to the cloth so far [N s]
   Vec3d angular_impulse = Vec3d::Zero();  ///< about the pivot [N m s]
 
-  // For the jaw of a gripper.
-  Vec3d press = Vec3d::Zero();     ///< unit pressing direction; zero: not a jaw
+  // What it pinches, of the last substep.
+  Vec3d pinch = Vec3d::Zero();  ///< unit direction towards another object, a layer between; or zero
+  double pinch_lack = 0;        ///< most that the layer there lacks of its thickness [m]
+  bool braces = false;          ///< another object pinches cloth against it
+  bool bracing = false;         ///< one does and presses, in the running tick
+
+  // For the jaw of a gripper, and what presses cloth on another object.
+  Vec3d press = Vec3d::Zero();     ///< unit pressing direction; zero: it does not press
   double hold = 0;                 ///< force whose friction holds what it grips in this tick [N]
   bool layered = false;            ///< what it grips are several layers, which resist it
   double squeeze = 0;              ///< its part that the cloth does not resist yet [N]
@@ -49,6 +55,12 @@ struct ColliderState {
   Vec3d force = Vec3d::Zero();  ///< of the cloth on it, mean of the last tick [N]
 
   bool is_moving() const { return !twist.is_zero(); }
+  void forget_pinch() {
+    pinch.setZero();
+    pinch_lack = 0;
+    braces = false;
+  }
+  bool is_jaw() const { return mate != kNone; }
   /// Whether it moves, or is meant to.
   bool is_active() const { return !wanted.is_zero() || hold > 0; }
 };

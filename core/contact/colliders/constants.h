@@ -53,6 +53,9 @@ inline constexpr double kYieldSpeed = 0.01;
 /// touches hold it.
 inline constexpr double kImpactSeconds = 1e-3;
 
+/// An object presses a layer if its goal lies at least so far behind it [m].
+inline constexpr double kPressingDepth = 1e-6;
+
 /// Most that is remembered of an overload, in impulses of an impact [1]. Larger: a collider stays
 /// held for longer after a hard hit. At 1 or below nothing holds it.
 inline constexpr double kMostOverload = 4;

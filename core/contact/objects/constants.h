@@ -131,6 +131,12 @@ inline constexpr double kSqueezed = 0.02;
 /// what lies loose between them. Smaller: what shakes is let go of for moments, and creeps out.
 inline constexpr double kSqueezedLayers = 0.3;
 
+/// A particle carries a row if its weight is above this [1].
+inline constexpr double kCarries = 0.1;
+
+/// Objects on both sides of a layer slip past each other if they do so faster than this [m/s].
+inline constexpr double kSlips = 1e-6;
+
 /// So many contacts of particles with a jaw hold the cloth alone [1]. Larger: more of the force
 /// lies where jaws end. Smaller: cloth of large cells turns between them.
 inline constexpr int kHoldAlone = 12;

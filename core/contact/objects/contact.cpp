@@ -180,6 +180,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     rebuild_rows(state, dt, profile);
     measure_travel(state, dt, executor_, reach_);
   }
+  if (motion_.any_tracked) find_pinches(rows_, state.x, motion_, pinches_);
   if (!rows_.all.empty()) {
     ObjectSolve<Real> solve = solving(state);
     profile[Stage::contact].work += rows_.all.size();
@@ -188,7 +189,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     push_out(clearance_.smallest_gap, dt, executor_, rows_, reach_, response_, state);
     aim_rows(solve, shapes_, dt);
     // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
-    if (motion_.any_jaw) share_hold(solve, motion_.first_substep ? dt / 2 : dt);
+    if (motion_.any_press) share_hold(solve, shapes_, motion_.first_substep ? dt / 2 : dt);
     solve_rows(solve, dt, guard);
     bounce(solve, guard);
     profile[Stage::friction].work += solve.friction_evaluations;
@@ -244,7 +245,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   if (response_.lone_apart)
     response_.lone = rows_.lone.respond(lone_pass(reach_, state, dt, false), executor_);
   aim_rows(solve, shapes_, dt);
-  if (motion_.any_jaw) share_hold(solve, dt / 2);
+  if (motion_.any_press) share_hold(solve, shapes_, dt / 2);
   solve_rows(solve, dt, guard);
   bounce(solve, guard);
   if (guard && !guard->rows().empty()) {

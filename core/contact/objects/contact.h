@@ -132,7 +132,8 @@ class Contact {
 
  private:
   ObjectSolve<Real> solving(ClothState<Real>& state) {
-    return {cloths_, rows_, response_, bounces_, motion_, reach_, log_, executor_, state};
+    return {cloths_, rows_, response_, bounces_, motion_, reach_,
+            log_,    pinches_, executor_, state};
   }
   void collect(const ClothState<Real>& state, Real dt, Profile& profile);
   bool renew_clear(const ClothState<Real>& state, Real dt, Profile& profile);
@@ -152,6 +153,7 @@ class Contact {
   RowReach<Real> reach_;
   ObjectRows<Real> rows_;
   RowResponse<Real> response_;
+  Pinches pinches_;
   Bounces<Real> bounces_;
   MoverStops<Real> stops_;
   /// `resolve` was called for the coming drift, and `move_objects` not yet.

@@ -45,7 +45,8 @@ struct ContactRow {
   Real keep = 0;                           ///< height over the plane that its particles keep [m]
   Real least_speed = 0;                    ///< that the normal velocity must reach now [m/s]
   Real thickness = 0;                      ///< that the cloth keeps [m]
-  Index cloth = 0;                         ///< whose friction and restitution it has
+  Real friction = 0;                       ///< Coulomb coefficient
+  Index cloth = 0;                         ///< whose thickness and restitution it has
   Index mover = kNone;                     ///< number among the rows with moving objects
   Index collider = 0;                      ///< the object
   Index impact = kNone;                    ///< number among the impacts of this step

@@ -92,7 +92,7 @@ void LoneRows<Real>::find(const std::vector<ContactRow<Real>>& rows,
     for (std::size_t c = 0; c < 3; ++c) block.normal[c][k] = rows[r].normal[static_cast<Index>(c)];
     block.offset[k] = rows[r].offset;
     block.thickness[k] = rows[r].thickness;
-    block.friction[k] = static_cast<Real>(cloth(rows[r]).friction);
+    block.friction[k] = rows[r].friction;
     block.touch2[k] = rooms[r].touch2;
     block.cross2[k] = rooms[r].cross2;
     block.row[k] = row_of_[i];

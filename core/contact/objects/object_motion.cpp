@@ -11,12 +11,18 @@
 namespace weft {
 namespace {
 
+/// Whether an object goes on into what it pinches, until the next tick presses instead.
+bool goes_into_pinch(const ColliderState& state) {
+  return state.press.isZero(0) && state.twist.linear.dot(state.pinch) > 0;
+}
+
 /// Objects that have been resisted by more than their force stand in the coming substep, and both
-/// jaws if one does. What yields already goes on.
+/// jaws if one does; and what has begun to pinch a layer. What yields already goes on.
 template <class Real>
 void stop_overloaded(double dt, ColliderStates& colliders, ObjectShapes<Real>& shapes) {
   for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
     ColliderFrame<Real>& frame = shapes.frames[k];
+    if (frame.tracked && goes_into_pinch(colliders[k])) frame.rest = std::max(frame.rest, 1);
     if (!frame.tracked || !count_resistance(dt, colliders[k]) || colliders[k].pace < 0) continue;
     frame.rest = std::max(frame.rest, 1);
     if (colliders[k].mate == kNone) continue;
@@ -34,7 +40,7 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
   motion.tick_seconds = static_cast<Real>(tick_seconds);
   motion.colliders = colliders;
   motion.work = 0;
-  motion.any_tracked = motion.any_jaw = false;
+  motion.any_tracked = motion.any_press = false;
   motion.first_substep = true;
   motion.surface_speed = 0;
   if (!colliders) {
@@ -46,11 +52,11 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
   for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
     ColliderFrame<Real>& frame = shapes.frames[k];
     ColliderState& state = (*colliders)[k];
-    const bool tracked = state.is_active();
+    const bool tracked = state.is_active() || state.bracing;
     rows_go |= tracked && !frame.tracked;  // the old ones do not follow it
     frame.tracked = tracked;
     motion.any_tracked = motion.any_tracked || tracked;
-    motion.any_jaw = motion.any_jaw || !state.press.isZero(0);
+    motion.any_press = motion.any_press || !state.press.isZero(0);
     state.facing = 0;
     // What slips out of jaws goes round their rims, where planes that stay would stop it for ever.
     rows_go |= state.hold > 0;

@@ -15,7 +15,7 @@ struct ObjectMotion {
   ColliderStates* colliders = nullptr;  ///< null: all stand as defined
   Real tick_seconds = 0;
   bool any_tracked = false;   ///< one of them moves in this tick
-  bool any_jaw = false;       ///< one of them is a gripper's
+  bool any_press = false;     ///< one of them presses, as jaws do
   bool first_substep = true;  ///< of the tick
   Real surface_speed = 0;     ///< of the fastest [m/s]
   Real since_pairs = 0;       ///< longest displacement since the pairs were collected [m]

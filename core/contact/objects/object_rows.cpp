@@ -244,7 +244,9 @@ void add_row(const ObjectRowSource<Real>& source, std::initializer_list<Index> p
   row.collider = static_cast<Index>(collider);
   row.responds = responds && !held;
   row.cloth = cloth_of(source.cloths, row.particle[0]);
-  row.thickness = static_cast<Real>(settings_of(source.cloths, row).thickness);
+  const ContactDef& settings = settings_of(source.cloths, row);
+  row.thickness = static_cast<Real>(settings.thickness);
+  row.friction = static_cast<Real>(settings.friction * frame.friction_factor);
   row.normal = barrier.normal;
   row.offset = static_cast<Real>(barrier.top);
   if (frame.tracked) {

@@ -61,6 +61,7 @@ ObjectShapes<Real> object_shapes(const std::vector<ColliderDef>& colliders, Mesh
     validate(colliders[k], "colliders[" + std::to_string(k) + "].");
     add_shape(colliders[k].shape, k, store, shapes);
     ColliderFrame<Real>& frame = shapes.frames.emplace_back();
+    frame.friction_factor = colliders[k].friction_factor;
     frame.pivot = pivot_of(colliders[k].shape);
     frame.radius = radius_of(colliders[k].shape);
     frame.pose = rest_pose(colliders[k].shape);

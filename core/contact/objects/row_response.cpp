@@ -99,11 +99,10 @@ Vec3<Real> respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v,
   assert(row.responds && push >= pressed && pressed >= 0);
   MovingRow<Real>* const moving = solve.rows.moving_of(row);
   Vec3<Real> change = row.normal * push;
-  const Real friction = static_cast<Real>(settings_of(solve.cloths, row).friction);
-  if (friction > 0) {
+  if (row.friction > 0) {
     ++solve.friction_evaluations;
     const Vec3<Real> slip = v - row.normal * vn;
-    const Real allowed = friction * pressed;
+    const Real allowed = row.friction * pressed;
     if (moving && moving->grip > 0) {
       change += rub_in_jaw(slip, allowed, *moving);
     } else if (!moving || !moving->layered) {
@@ -176,7 +175,8 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
       const ContactRow<Real>& row = solve.rows.all[r];
       const auto particles = particles_of(row);
       if (std::none_of(particles.begin(), particles.end(), is_new)) continue;
-      const bool rubs = !is_of_jaw(at_index(row.collider));
+      const MovingRow<Real>* const held = solve.rows.moving_of(row);
+      const bool rubs = !is_of_jaw(at_index(row.collider)) && !(held && held->grip > 0);
       if (!(solve_row(solve, r, rubs).change.squaredNorm() > Real(kJawResidual * kJawResidual)))
         continue;
       note(row, sweep);
@@ -280,7 +280,7 @@ void solve_rows(ObjectSolve<Real>& solve, Real dt, ClothGuard<Real>* guard) {
     left = std::max(left, sweep_rows(solve, again));
     if (guard && sweep == 0) among_cloths = guard->sweep(solve.state);
   }
-  if (solve.motion.any_jaw) settle_between_jaws(solve);
+  if (solve.motion.any_press) settle_between_jaws(solve);
   if (!(among_cloths > static_cast<Real>(kStill))) guard = nullptr;
   const Real enough = solve.cloths.thickness * Real(kResidual) / dt;
   for (int sweep = 0; guard && sweep < kMoreSweeps && (sweep == 0 || left > enough); ++sweep) {

@@ -10,6 +10,7 @@
 #include "core/contact/objects/lone_rows.h"
 #include "core/contact/objects/object_motion.h"
 #include "core/contact/objects/object_rows.h"
+#include "core/contact/objects/pinches.h"
 #include "core/executor.h"
 #include "core/types.h"
 
@@ -20,6 +21,12 @@ namespace weft {
 template <class Real>
 class ClothGuard;
 
+/// A row by which a jaw, or an object that presses, holds a layer.
+struct GrippedRow {
+  std::size_t moving = 0;  ///< number among the moving rows
+  std::size_t other = 0;   ///< the object on the other side of the layer
+};
+
 /// Which rows respond in a substep, and what they have done.
 template <class Real>
 struct RowResponse {
@@ -27,6 +34,8 @@ struct RowResponse {
   std::vector<std::size_t> pushed;  ///< those that have, some more than once
   bool lone_apart = false;          ///< lone rows are processed apart, all at once
   LoneResponse<Real> lone;          ///< theirs, before others respond
+  std::vector<GrippedRow> gripped;  ///< by which one object holds
+  std::vector<GrippedRow> braced;   ///< on the other side of what it presses on another one
   Vec3Array<Real> x_unpushed;       ///< positions before the push-out [m]
   std::vector<int> changed;         ///< the last sweep between jaws that moved each particle
 };
@@ -52,6 +61,7 @@ struct ObjectSolve {
   ObjectMotion<Real>& motion;  ///< takes the reactions
   RowReach<Real>& reach;       ///< of it lone rows measure the displacements
   ContactLog& log;
+  Pinches& pinches;
   Executor* executor;  ///< runs parts of the work on its threads; may be null
   ClothState<Real>& state;
   std::uint64_t friction_evaluations = 0;
@@ -98,9 +108,10 @@ void push_out(Real smallest_gap, Real dt, Executor* executor, ObjectRows<Real>& 
 template <class Real>
 void aim_rows(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real dt);
 
-/// Shares what each jaw holds with as friction among the rows that touch it.
+/// Shares what each jaw, and each object that presses a layer on another, holds with as friction
+/// among the rows that touch it, and those on the other side of the layer.
 template <class Real>
-void share_hold(ObjectSolve<Real>& solve, Real dt);
+void share_hold(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real dt);
 
 /// One sweep of projected Gauss-Seidel.
 /// @param again  nothing but these rows has changed a velocity since the last sweep: lone ones have

@@ -1,0 +1,153 @@
+// Finds single layers of cloth between an object that comes and another object.
+
+#include "core/contact/objects/pinches.h"
+
+#include <algorithm>
+#include <cassert>
+#include <limits>
+#include <utility>
+
+#include "core/contact/objects/constants.h"
+#include "core/instantiate.h"
+
+namespace weft {
+namespace {
+
+/// First touch of a particle that has none yet.
+constexpr Index kNoTouch = kNone - 1;
+
+/// Jaws, which close on what both have in front of them, are grippers' own affair.
+bool may_pinch(const ColliderState& collider) {
+  return collider.is_active() && !collider.forced && !collider.is_jaw();
+}
+
+template <class Real>
+Real gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) {
+  return row.normal.dot(weighted(row, x)) - row.offset;
+}
+
+template <class Real>
+bool is_touching(const ContactRow<Real>& row, const Vec3Array<Real>& x) {
+  return row.responds &&
+         gap_of(row, x) < row.thickness * Real(1 + kSqueezed) + Real(kTouchSlack);
+}
+
+/// Lists the rows of objects that come, as far as they touch, and their particles.
+template <class Real>
+void list_fronts(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
+                 const ColliderStates& colliders, Pinches& pinches) {
+  pinches.first_touch.resize(x.size(), kNone);
+  for (const MovingRow<Real>& moving : rows.moving) {
+    if (!may_pinch(colliders[moving.collider])) continue;
+    const ContactRow<Real>& row = rows.all[moving.row];
+    if (!is_touching(row, x)) continue;
+    pinches.fronts.push_back({moving.row, moving.collider, moving.collider});
+    for (std::size_t k = 0; k < row.count; ++k) {
+      Index& first = pinches.first_touch[at_index(row.particle[k])];
+      if (first != kNone) continue;
+      first = kNoTouch;
+      pinches.particles.push_back(row.particle[k]);
+    }
+  }
+}
+
+/// Lists what touches the particles of `fronts`.
+template <class Real>
+void list_touches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
+                  const ColliderStates& colliders, Pinches& pinches) {
+  for (std::size_t r = 0; r < rows.all.size(); ++r) {
+    const ContactRow<Real>& row = rows.all[r];
+    const auto is_of_front = [&](std::size_t k) {
+      return pinches.first_touch[at_index(row.particle[k])] != kNone;
+    };
+    if (!is_of_front(0) && !(row.count > 1 && is_of_front(1)) && !(row.count > 2 && is_of_front(2)))
+      continue;
+    if (colliders[at_index(row.collider)].is_jaw() || !is_touching(row, x)) continue;
+    for (std::size_t k = 0; k < row.count; ++k) {
+      if (!is_of_front(k)) continue;
+      Index& first = pinches.first_touch[at_index(row.particle[k])];
+      pinches.touches.push_back({r, first});
+      first = static_cast<Index>(pinches.touches.size()) - 1;
+    }
+  }
+}
+
+/// Whether another object is behind each particle that carries a row of an object that comes. Adds
+/// the rows of these others.
+/// @param lack  set to what the layer lacks of its thickness, at most [m]
+template <class Real>
+bool is_backed(const ObjectRows<Real>& rows, const Vec3Array<Real>& x, PinchRow& front,
+               Pinches& pinches, Real& lack) {
+  const ContactRow<Real>& row = rows.all[front.row];
+  Real behind = std::numeric_limits<Real>::lowest();
+  const std::size_t known = pinches.backs.size();
+  for (std::size_t k = 0; k < row.count; ++k) {
+    if (!(row.weight[k] > Real(kCarries))) continue;
+    bool backed = false;
+    Index at = pinches.first_touch[at_index(row.particle[k])];
+    for (; at != kNoTouch; at = pinches.touches[at_index(at)].next) {
+      const std::size_t r = pinches.touches[at_index(at)].row;
+      const ContactRow<Real>& other = rows.all[r];
+      if (other.collider == row.collider || !(other.normal.dot(row.normal) < -Real(kFacing)))
+        continue;
+      backed = true;
+      pinches.backs.push_back({r, front.object, front.object});
+      front.other = at_index(other.collider);
+      behind = std::max(behind, other.thickness - gap_of(other, x));
+    }
+    if (backed) continue;
+    pinches.backs.resize(known);
+    return false;
+  }
+  lack = behind + row.thickness - gap_of(row, x);
+  return true;
+}
+
+/// Removes rows that several particles have brought.
+void remove_doubles(std::vector<PinchRow>& rows) {
+  const auto key = [](const PinchRow& r) { return std::pair(r.object, r.row); };
+  std::sort(rows.begin(), rows.end(),
+            [&key](const PinchRow& a, const PinchRow& b) { return key(a) < key(b); });
+  const auto same = [&key](const PinchRow& a, const PinchRow& b) { return key(a) == key(b); };
+  rows.erase(std::unique(rows.begin(), rows.end(), same), rows.end());
+}
+
+}  // namespace
+
+template <class Real>
+void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
+                  ObjectMotion<Real>& motion, Pinches& pinches) {
+  assert(motion.colliders);
+  ColliderStates& colliders = *motion.colliders;
+  for (ColliderState& collider : colliders) collider.forget_pinch();
+  for (const Index i : pinches.particles) pinches.first_touch[at_index(i)] = kNone;
+  pinches.particles.clear();
+  pinches.fronts.clear();
+  pinches.backs.clear();
+  pinches.touches.clear();
+  list_fronts(rows, x, colliders, pinches);
+  if (pinches.fronts.empty()) return;
+  list_touches(rows, x, colliders, pinches);
+  std::size_t backed = 0;
+  for (std::size_t n = 0; n < pinches.fronts.size(); ++n) {
+    PinchRow& front = pinches.fronts[n];
+    Real lack = 0;
+    if (!is_backed(rows, x, front, pinches, lack)) continue;
+    ColliderState& object = colliders[front.object];
+    object.pinch += rows.all[front.row].normal.template cast<double>();
+    object.pinch_lack = std::max(object.pinch_lack, static_cast<double>(lack));
+    pinches.fronts[backed++] = front;
+  }
+  pinches.fronts.resize(backed);
+  remove_doubles(pinches.backs);
+  for (const PinchRow& back : pinches.backs)
+    colliders[at_index(rows.all[back.row].collider)].braces = true;
+  for (ColliderState& collider : colliders) {
+    const double size = collider.pinch.norm();
+    if (size > 0) collider.pinch /= size;
+  }
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(find_pinches)
+
+}  // namespace weft
