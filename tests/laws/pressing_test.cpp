@@ -130,15 +130,21 @@ TEST_CASE("a layer that is pressed is held at 0.9 of what friction on both sides
       World<float> world(pressed_sheet(c));
       press(world);
       const double allowed = c.friction * (2 * c.max_force + 0.008 * 9.81);
+      const auto middle = static_cast<std::size_t>(c.particles * c.particles / 2);
+      const auto before = static_cast<double>(world.state().x[middle][0]);
       EnvironmentDef pulled = world.environment();
-      pulled.gravity[0] = load * allowed / 0.008;
-      world.set_environment(pulled);
-      const double before = test::centre_of_mass(world)[0];
+      pulled.damping = 5;
+      constexpr int kTicks = 60;
+      for (int t = 1; t <= kTicks; ++t) {  // slowly, so that nothing swings
+        pulled.gravity[0] = load * allowed / 0.008 * t / kTicks;
+        world.set_environment(pulled);
+        world.step();
+      }
       test::advance(world, 0.5);
-      const double moved = test::centre_of_mass(world)[0] - before;
+      const double moved = static_cast<double>(world.state().x[middle][0]) - before;
       INFO((finger ? "finger, " : "plate, ") << load);
       if (load < 1)
-        CHECK(std::abs(moved) < 3e-3);  // which it stretches by
+        CHECK(std::abs(moved) < 3e-3);  // which it is stretched by
       else
         CHECK(moved > 0.02);
     }
@@ -168,7 +174,8 @@ TEST_CASE("a layer goes along with that of two surfaces that rubs it more") {
         CHECK(rub == Approx(-factor * c.friction * c.max_force).epsilon(0.05));
       } else {
         CHECK(moved == Approx(1).margin(0.15));
-        CHECK(-rub > c.friction * c.max_force);
+        CHECK(-rub > 0.65 * c.friction * c.max_force);  // the ground's, which slows the layer
+        CHECK(-rub < 1.15 * c.friction * c.max_force);
       }
     }
   }

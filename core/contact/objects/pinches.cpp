@@ -103,6 +103,29 @@ bool is_backed(const ObjectRows<Real>& rows, const Vec3Array<Real>& x, PinchRow&
   return true;
 }
 
+/// Mean normal of the rows on one side of what object `k` pinches. The flatter that side is, the
+/// nearer is its length to 1.
+template <class Real>
+Vec3d mean_normal(std::size_t k, const ObjectRows<Real>& rows, const std::vector<PinchRow>& side) {
+  Vec3d sum = Vec3d::Zero();
+  int count = 0;
+  for (const PinchRow& pinch : side) {
+    if (pinch.object != k) continue;
+    sum += rows.all[pinch.row].normal.template cast<double>();
+    ++count;
+  }
+  assert(count > 0);
+  return sum / count;
+}
+
+/// Direction in which object `k` presses what it pinches: across the flatter of both sides, unit.
+template <class Real>
+Vec3d direction_of(std::size_t k, const ObjectRows<Real>& rows, const Pinches& pinches) {
+  const Vec3d front = mean_normal(k, rows, pinches.fronts);
+  const Vec3d back = mean_normal(k, rows, pinches.backs);
+  return (front.squaredNorm() < back.squaredNorm() ? Vec3d(-back) : front).normalized();
+}
+
 /// Removes rows that several particles have brought.
 void remove_doubles(std::vector<PinchRow>& rows) {
   const auto key = [](const PinchRow& r) { return std::pair(r.object, r.row); };
@@ -134,7 +157,7 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
     Real lack = 0;
     if (!is_backed(rows, x, front, pinches, lack)) continue;
     ColliderState& object = colliders[front.object];
-    object.pinch += rows.all[front.row].normal.template cast<double>();
+    object.pinch = rows.all[front.row].normal.template cast<double>();
     object.pinch_lack = std::max(object.pinch_lack, static_cast<double>(lack));
     pinches.fronts[backed++] = front;
   }
@@ -142,10 +165,8 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
   remove_doubles(pinches.backs);
   for (const PinchRow& back : pinches.backs)
     colliders[at_index(rows.all[back.row].collider)].braces = true;
-  for (ColliderState& collider : colliders) {
-    const double size = collider.pinch.norm();
-    if (size > 0) collider.pinch /= size;
-  }
+  for (std::size_t k = 0; k < colliders.size(); ++k)
+    if (!colliders[k].pinch.isZero(0)) colliders[k].pinch = direction_of(k, rows, pinches);
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(find_pinches)
