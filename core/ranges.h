@@ -21,10 +21,10 @@ inline constexpr Range kStiffnessRange{0, 1e5};  ///< of a hand [N/m]
 inline constexpr Range kForceRange{0, 1e6};      ///< of a hand or a moving pin [N]
 
 // Objects and pins that move.
-inline constexpr Range kMoveSpeedRange{1e-3, 20};  ///< of a collider, gripper or pin [m/s]
-inline constexpr Range kTurnSpeedRange{1e-3, 60};  ///< of a collider or gripper [rad/s]
-inline constexpr Range kOpeningRange{0, 1};        ///< between a gripper's jaws [m]
-inline constexpr Range kGripRange{0, 1000};        ///< force of each jaw [N]
+inline constexpr Range kMoveSpeedRange{1e-3, 20};    ///< of a collider, gripper or pin [m/s]
+inline constexpr Range kTurnSpeedRange{1e-3, 60};    ///< of a collider or gripper [rad/s]
+inline constexpr Range kOpeningRange{0, 1};          ///< between a gripper's jaws [m]
+inline constexpr Range kGripRange{0, 1000};          ///< force of each jaw [N]
 inline constexpr Range kFrictionFactorRange{0, 10};  ///< of an object, times that of cloth
 
 // Gravity and air.

@@ -1,8 +1,8 @@
-#include <catch2/catch.hpp>
-
 #include <array>
 #include <cmath>
 #include <utility>
+
+#include <catch2/catch.hpp>
 
 #include "tests/support/worlds.h"
 
@@ -40,13 +40,13 @@ WorldDef plate_on_layers(int layers, double thickness, double max_force) {
 }
 
 struct Pressed {
-  int particles = 13;        ///< a side
-  double thickness = 1e-3;   ///< [m]
-  double max_force = 5;      ///< of the object [N]
-  bool finger = false;       ///< a ball of 1 cm in place of a plate of 10 cm
-  bool on_table = false;     ///< a box in place of the ground
-  double friction = 0.4;     ///< with the ground
-  double factor = 1;         ///< of the object, times that
+  int particles = 13;                  ///< a side
+  double thickness = 1e-3;             ///< [m]
+  double max_force = 5;                ///< of the object [N]
+  bool finger = false;                 ///< a ball of 1 cm in place of a plate of 10 cm
+  bool on_table = false;               ///< a box in place of the ground
+  double friction = 0.4;               ///< with the ground
+  double factor = 1;                   ///< of the object, times that
   Vec3d gravity = Vec3d(0, -9.81, 0);  ///< [m/s^2]
 };
 
@@ -99,9 +99,8 @@ std::array<Vec3d, 2> mean_forces(World<float>& world, int ticks) {
 }  // namespace
 
 TEST_CASE("an object presses a single layer on another with its force, and does not thin it") {
-  for (const Pressed& c :
-       {Pressed{}, Pressed{33, 5e-4, 50}, Pressed{13, 2e-3, 1, true}, Pressed{33, 1e-3, 5, true, true},
-        Pressed{20, 1e-3, 20, false, true}}) {
+  for (const Pressed& c : {Pressed{}, Pressed{33, 5e-4, 50}, Pressed{13, 2e-3, 1, true},
+                           Pressed{33, 1e-3, 5, true, true}, Pressed{20, 1e-3, 20, false, true}}) {
     World<float> world(pressed_sheet(c));
     press(world);
     const double weight = 0.008 * 9.81;
@@ -153,7 +152,8 @@ TEST_CASE("a layer that is pressed is held at 0.9 of what friction on both sides
 
 TEST_CASE("a layer goes along with that of two surfaces that rubs it more") {
   for (const bool finger : {false, true}) {
-    for (const auto& [factor, speed] : {std::pair(0.5, 0.1), std::pair(2.0, 0.1), std::pair(2.0, 0.01)}) {
+    for (const auto& [factor, speed] :
+         {std::pair(0.5, 0.1), std::pair(2.0, 0.1), std::pair(2.0, 0.01)}) {
       Pressed c;
       c.finger = finger;
       c.factor = factor;

@@ -53,9 +53,9 @@ using ShapeDef = std::variant<PlaneDef, SphereDef, CapsuleDef, BoxDef, MeshDef>;
 struct ColliderDef {
   std::string name;
   ShapeDef shape;
-  MotionDef motion = {};   ///< keyframes, if it has its own motion
-  double max_force = 100;  ///< resistance beyond which it lags [N], 0.01 to 1e6
-  bool force = false;      ///< follows its keyframes even if cloth cannot yield; see MoveDef
+  MotionDef motion = {};       ///< keyframes, if it has its own motion
+  double max_force = 100;      ///< resistance beyond which it lags [N], 0.01 to 1e6
+  bool force = false;          ///< follows its keyframes even if cloth cannot yield; see MoveDef
   double friction_factor = 1;  ///< times the coefficient of the cloth that touches it, 0 to 10
 };
 

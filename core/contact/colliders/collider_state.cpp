@@ -53,16 +53,15 @@ double next_pace(const ColliderState& state, double resistance, double seconds) 
 }
 
 /// What is left of the step towards its goal of an object that pinches a layer against another one
-/// [m]: it goes no farther that way, but back to where the layer has its thickness, and presses with
-/// its force as long as its goal lies there. It moves on along the layer. Where layers beside resist
-/// with its force it does not press besides.
+/// [m]: it goes no farther that way, but back to where the layer has its thickness, and presses
+/// with its force as long as its goal lies there. It moves on along the layer. Where layers beside
+/// resist with its force it does not press besides.
 /// @param seconds  of the last tick, whose impulses the state still has
 Vec3d step_along_pinch(const Vec3d& step, double seconds, ColliderState& state) {
   assert(!state.is_jaw() && seconds > 0);
   const double into = step.dot(state.pinch);
   const double resistance = std::max(0.0, state.impulse.dot(state.pinch) / seconds);
-  const bool presses =
-      into > kPressingDepth && resistance < state.max_force && !state.forced;
+  const bool presses = into > kPressingDepth && resistance < state.max_force && !state.forced;
   state.press = presses ? state.pinch : Vec3d::Zero();
   state.hold = presses ? state.max_force : 0;
   state.squeeze = presses ? state.max_force - resistance : 0;

@@ -132,8 +132,7 @@ class Contact {
 
  private:
   ObjectSolve<Real> solving(ClothState<Real>& state) {
-    return {cloths_, rows_, response_, bounces_, motion_, reach_,
-            log_,    pinches_, executor_, state};
+    return {cloths_, rows_, response_, bounces_, motion_, reach_, log_, pinches_, executor_, state};
   }
   void collect(const ClothState<Real>& state, Real dt, Profile& profile);
   bool renew_clear(const ClothState<Real>& state, Real dt, Profile& profile);

@@ -28,8 +28,7 @@ Real gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) {
 
 template <class Real>
 bool is_touching(const ContactRow<Real>& row, const Vec3Array<Real>& x) {
-  return row.responds &&
-         gap_of(row, x) < row.thickness * Real(1 + kSqueezed) + Real(kTouchSlack);
+  return row.responds && gap_of(row, x) < row.thickness * Real(1 + kSqueezed) + Real(kTouchSlack);
 }
 
 /// Lists the rows of objects that come, as far as they touch, and their particles.
