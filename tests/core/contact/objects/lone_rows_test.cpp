@@ -112,6 +112,7 @@ struct Layer {
       ContactRow<float> row = row_of({static_cast<Index>(i)});
       row.normal = Vec3f::UnitY();
       row.thickness = 0.004f;
+      row.friction = 0.4f;
       rows.push_back(row);
     }
     from = x;
