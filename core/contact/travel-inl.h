@@ -31,8 +31,9 @@ HWY_INLINE bool travel_of(D d, const TravelPass<Real>& p, std::size_t n) {
     end2 = hn::Add(end2, hn::Mul(end, end));
   }
   hn::StoreU(hn::Max(now2, end2), d, p.travel2 + n);
-  const auto reach = hn::LoadU(d, p.reach + n);
-  return hn::AllTrue(d, hn::Le(end2, hn::Mul(reach, reach)));
+  const auto left = hn::Sub(hn::LoadU(d, p.reach + n), hn::Set(d, p.less));
+  const auto most2 = hn::Mul(left, hn::Abs(left));
+  return hn::AllTrue(d, hn::And(hn::Le(now2, most2), hn::Le(end2, most2)));
 }
 
 template <class Real>

@@ -19,12 +19,14 @@ struct TravelPass {
   Real dt = 0;                  ///< of the coming drift [s]
   const Real* from = nullptr;   ///< origin of the displacement [m]
   const Real* reach = nullptr;  ///< allowed displacement, one number per particle [m]
+  Real less = 0;                ///< what objects have taken from it [m]
   Real* travel2 = nullptr;  ///< squared displacement, the longer of now and after the drift [m^2]
 };
 
 /// Measures the displacement of every particle.
 /// @param executor  distributes many particles to its threads; may be null
-/// @return whether all end within their reach; false if any number is NaN
+/// @return whether all are within what is left of their reach, now and after the drift; false if
+///         any number is NaN
 bool measure_travel(const TravelPass<float>& pass, Executor* executor);
 bool measure_travel(const TravelPass<double>& pass, Executor* executor);
 

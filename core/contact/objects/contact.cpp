@@ -111,7 +111,7 @@ bool Contact<Real>::renew_clear(const ClothState<Real>& state, Real dt, Profile&
     reach_.x[i] = state.x[i];
     ++profile[Stage::broad_phase].work;
   }
-  return measure_travel(state, dt, executor_, reach_);
+  return measure_travel(state, dt, Real(0), executor_, reach_);
 }
 
 /// Makes the rows anew from the candidates, which are collected again first if they do not hold.
@@ -173,20 +173,22 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
   bool hold = clearance_.collected && reach_.made;
   {
     const StageTimer timer(profile, Stage::broad_phase, 0);
-    hold = (hold && rows_hold(state, dt, motion_, rows_, executor_, reach_)) ||
+    // Objects have taken a part of the reach, and will take more.
+    const Real less = motion_.since_rows + motion_.coming;
+    hold = (hold && measure_travel(state, dt, less, executor_, reach_)) ||
            renew_clear(state, dt, profile);
   }
   if (!hold) {
     rebuild_rows(state, dt, profile);
-    measure_travel(state, dt, executor_, reach_);
+    measure_travel(state, dt, Real(0), executor_, reach_);
   }
   if (motion_.any_tracked) find_pinches(rows_, state.x, motion_, pinches_);
   if (!rows_.all.empty()) {
     ObjectSolve<Real> solve = solving(state);
     profile[Stage::contact].work += rows_.all.size();
     if (log_.wanted()) log_.see(rows_.all, state);
-    find_busy_rows(rows_, motion_, reach_.travel2, log_, response_);
-    push_out(clearance_.smallest_gap, dt, executor_, rows_, reach_, response_, state);
+    find_busy_rows(rows_, reach_.travel2, log_, response_);
+    push_out(solve, clearance_.smallest_gap, dt);
     aim_rows(solve, shapes_, dt);
     // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
     if (motion_.any_press) share_hold(solve, shapes_, motion_.first_substep ? dt / 2 : dt);
@@ -240,10 +242,9 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   ObjectSolve<Real> solve = solving(state);
   profile[Stage::contact].work += rows_.all.size();
   if (log_.wanted()) log_.see(rows_.all, state);
-  measure_travel(state, dt, executor_, reach_);
-  find_busy_rows(rows_, motion_, reach_.travel2, log_, response_);
-  if (response_.lone_apart)
-    response_.lone = rows_.lone.respond(lone_pass(reach_, state, dt, false), executor_);
+  measure_travel(state, dt, Real(0), executor_, reach_);
+  find_busy_rows(rows_, reach_.travel2, log_, response_);
+  respond_alone(solve, dt, false);
   aim_rows(solve, shapes_, dt);
   if (motion_.any_press) share_hold(solve, shapes_, dt / 2);
   solve_rows(solve, dt, guard);

@@ -39,6 +39,8 @@ struct ContactPoint {
 class ContactLog {
  public:
   bool wanted() const { return wanted_; }
+  /// Whether it wants all impulses one by one, too.
+  bool wants_each() const { return each_wanted_; }
   /// @param contacts  sums, for `contacts`
   /// @param each      all impulses one by one, for `visit_from`
   void want(bool contacts, bool each);

@@ -81,6 +81,9 @@ class LoneRows {
   LoneResponse<Real> respond(const LonePass<Real>& pass, Executor* executor);
   /// One more response, after others have changed velocities. Ways are not measured.
   LoneResponse<Real> sweep(const LonePass<Real>& pass, Executor* executor);
+  /// Calls visit(row) for each.
+  template <class Visit>
+  void for_each(Visit&& visit) const;
   /// Calls visit(row) for rows whose particles could cross their planes.
   /// @param travel2  squared way of each particle [m^2]
   template <class Visit>
@@ -93,6 +96,15 @@ class LoneRows {
   std::vector<char> is_lone_;
   std::vector<Index> row_of_;  ///< each particle: its only row; while they are found
 };
+
+template <class Real>
+template <class Visit>
+void LoneRows<Real>::for_each(Visit&& visit) const {
+  for (const LoneBlock<Real>& block : blocks_) {
+    for (const Index r : block.row)
+      if (r != kNone) visit(at_index(r));
+  }
+}
 
 template <class Real>
 template <class Visit>

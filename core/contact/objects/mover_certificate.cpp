@@ -119,11 +119,16 @@ bool hold_or_block(ObjectCertificate<Real>& c, bool carry) {
 
 template <class Real>
 void certify_with_movers(ObjectCertificate<Real>& c) {
-  bool kept = true;
-  for (int round = 0; round < kCertifyRounds && kept; ++round) {
+  bool kept = false;
+  const auto keep = [&](const ContactRow<Real>& row) {
+    kept |= row.mover != kNone ? keep_off_mover(c, row) : keep_off(c, row, false);
+  };
+  const bool within = measure_travel(c.state, c.dt, c.motion.since_rows, c.executor, c.reach);
+  for_near_rows(c, keep);
+  if (within && !kept) return;
+  for (int round = 1; round < kCertifyRounds && kept; ++round) {
     kept = false;
-    for (const ContactRow<Real>& row : c.rows.all)
-      kept |= row.mover != kNone ? keep_off_mover(c, row) : keep_off(c, row, false);
+    for (const ContactRow<Real>& row : c.rows.all) keep(row);
   }
   // A particle that still would cross is carried along by its object, if that is legal; else
   // objects stand, one after the other. When all stand, not moving is legal.

@@ -69,48 +69,21 @@ void hold_within_reach(ObjectCertificate<Real>& c) {
   }
 }
 
-/// Keeps particles off the planes that they could cross. @return whether any had to be kept
-template <class Real>
-bool keep_off_near_rows(ObjectCertificate<Real>& c, bool still) {
-  const std::vector<Real>& travel2 = c.reach.travel2;
-  bool kept = false;
-  for_joint_rows(c.rows, c.response, [&](std::size_t r) {
-    const RowRoom<Real>& room = c.rows.rooms[r];
-    if (!still || !(farthest2(room, travel2) < room.cross2))
-      kept |= keep_off(c, c.rows.all[r], false);
-  });
-  if (c.response.lone_apart) {
-    c.rows.lone.for_each_crossing(
-        travel2.data(), [&](std::size_t r) { kept |= keep_off(c, c.rows.all[r], false); });
-  }
-  return kept;
-}
-
 }  // namespace
 
 template <class Real>
-bool measure_travel(const ClothState<Real>& state, Real dt, Executor* executor,
+bool measure_travel(const ClothState<Real>& state, Real dt, Real less, Executor* executor,
                     RowReach<Real>& reach) {
-  assert(reach.x.size() == state.x.size() && reach.travel2.size() == state.x.size());
-  const TravelPass<Real> pass{
-      state.x.size(),         state.x.data()->data(), state.v.data()->data(), dt,
-      reach.x.data()->data(), reach.reach.data(),     reach.travel2.data()};
+  assert(less >= 0 && reach.x.size() == state.x.size() && reach.travel2.size() == state.x.size());
+  const TravelPass<Real> pass{state.x.size(),
+                              state.x.data()->data(),
+                              state.v.data()->data(),
+                              dt,
+                              reach.x.data()->data(),
+                              reach.reach.data(),
+                              less,
+                              reach.travel2.data()};
   return measure_travel(pass, executor);
-}
-
-template <class Real>
-bool rows_hold(const ClothState<Real>& state, Real dt, const ObjectMotion<Real>& motion,
-               const ObjectRows<Real>& rows, Executor* executor, RowReach<Real>& reach) {
-  if (is_still(motion, rows)) return measure_travel(state, dt, executor, reach);
-  const Real less = motion.since_rows + motion.coming;  // what objects have taken, and will
-  for (std::size_t i = 0; i < state.x.size(); ++i) {
-    const Vec3<Real> next = state.x[i] + state.v[i] * dt;
-    const Real left = reach.reach[i] - less;
-    const Real moved2 =
-        std::max((next - reach.x[i]).squaredNorm(), (state.x[i] - reach.x[i]).squaredNorm());
-    if (!(moved2 <= left * std::abs(left))) return false;
-  }
-  return true;
 }
 
 template <class Real>
@@ -150,15 +123,15 @@ template <class Real>
 void certify(ObjectCertificate<Real>& c, bool others) {
   assert(c.dt > 0 && c.rows.rooms.size() == c.rows.all.size());
   if (!c.rows.moving.empty()) return certify_with_movers(c);
-  const bool still = is_still(c.motion, c.rows);
-  const auto is_within_reach = [&] {
-    return others ? measure_travel(c.state, c.dt, c.executor, c.reach) : measure_pushed_travel(c);
-  };
-  if (!still || !is_within_reach()) {
+  const Real less = c.motion.since_rows;
+  const bool within = others || less > 0 ? measure_travel(c.state, c.dt, less, c.executor, c.reach)
+                                         : measure_pushed_travel(c);
+  if (!within) {
     hold_within_reach(c);
-    measure_travel(c.state, c.dt, c.executor, c.reach);
+    measure_travel(c.state, c.dt, less, c.executor, c.reach);
   }
-  bool kept = keep_off_near_rows(c, still);
+  bool kept = false;
+  for_near_rows(c, [&](const ContactRow<Real>& row) { kept |= keep_off(c, row, false); });
   if (!kept) return;
   for (int round = 1; round < kCertifyRounds && kept; ++round) {
     kept = false;
@@ -170,6 +143,6 @@ void certify(ObjectCertificate<Real>& c, bool others) {
   hold_within_reach(c);
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(measure_travel, rows_hold, log_stop, keep_off, certify)
+WEFT_INSTANTIATE_FUNCTIONS(measure_travel, log_stop, keep_off, certify)
 
 }  // namespace weft

@@ -32,15 +32,25 @@ struct ObjectCertificate {
 };
 
 /// Measures how far all particles are from where the rows were made, now or after the coming drift.
-/// @return whether all stay within their reach
+/// @param less  what objects have taken of each particle's reach [m]
+/// @return whether all stay within the rest of it
 template <class Real>
-bool measure_travel(const ClothState<Real>& state, Real dt, Executor* executor,
+bool measure_travel(const ClothState<Real>& state, Real dt, Real less, Executor* executor,
                     RowReach<Real>& reach);
 
-/// Whether the rows hold through the coming drift.
-template <class Real>
-bool rows_hold(const ClothState<Real>& state, Real dt, const ObjectMotion<Real>& motion,
-               const ObjectRows<Real>& rows, Executor* executor, RowReach<Real>& reach);
+/// Calls visit(row) for those that particles could cross in the coming drift: the others are
+/// farther away than the particles go. Objects that move come nearer, and their rows always count.
+template <class Real, class Visit>
+void for_near_rows(const ObjectCertificate<Real>& c, Visit&& visit) {
+  const std::vector<Real>& travel2 = c.reach.travel2;
+  for_joint_rows(c.rows, c.response, [&](std::size_t r) {
+    const ContactRow<Real>& row = c.rows.all[r];
+    const RowRoom<Real>& room = c.rows.rooms[r];
+    if (row.mover != kNone || !(farthest2(room, travel2) < room.cross2)) visit(row);
+  });
+  if (!c.response.lone_apart) return;
+  c.rows.lone.for_each_crossing(travel2.data(), [&](std::size_t r) { visit(c.rows.all[r]); });
+}
 
 /// Certifies the coming drift: no particle crosses a plane or goes beyond the reach.
 /// @param others  whether anything but rows has changed velocities since all displacements were

@@ -110,10 +110,15 @@ Vec3<Real> respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v,
       change -= speed > allowed ? (slip * (allowed / speed)).eval() : slip;
     }
   }
+  const Vec3<Real> before = solve.state.v[at_index(row.particle[0])];
   share_out(row, change, solve.state.v);
   solve.response.pushed.push_back(r);
   if (moving) take_reaction(*moving, weighted(row, solve.state.x), change, solve.motion);
-  if (solve.log.wanted()) solve.log.add(solve.rows.all, r, change);
+  if (solve.log.wanted()) {
+    // What the velocity has got, rounded as it is, is what lone rows processed apart tell.
+    const Vec3<Real> got = solve.state.v[at_index(row.particle[0])] - before;
+    solve.log.add(solve.rows.all, r, row.count == 1 ? got : change);
+  }
   return change;
 }
 
@@ -185,56 +190,81 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
   }
 }
 
+/// What lone rows work on.
+/// @param pushes  whether they push particles out
+template <class Real>
+LonePass<Real> lone_pass(const ObjectSolve<Real>& solve, Real dt, bool pushes) {
+  return {solve.state.x.data()->data(),
+          solve.state.v.data()->data(),
+          dt,
+          Real(kTouchSlack),
+          pushes ? Real(kPushOutPart) : Real(0),
+          Real(kPushOutSpeed) * dt,
+          solve.reach.x.data()->data(),
+          solve.reach.reach.data(),
+          solve.reach.travel2.data()};
+}
+
+/// Lets lone rows do some work(), and notes the impulses that it gives them.
+template <class Real, class Work>
+LoneResponse<Real> note_lone(ObjectSolve<Real>& solve, Work&& work) {
+  if (!solve.log.wanted()) return work();
+  const Vec3Array<Real>&v = solve.state.v, &before = solve.response.v_lone;
+  solve.response.v_lone = v;
+  const LoneResponse<Real> response = work();
+  solve.rows.lone.for_each([&](std::size_t r) {
+    const auto i = at_index(solve.rows.all[r].particle[0]);
+    if (v[i] != before[i]) solve.log.add(solve.rows.all, r, (v[i] - before[i]).eval());
+  });
+  return response;
+}
+
 }  // namespace
 
 template <class Real>
-void find_busy_rows(const ObjectRows<Real>& rows, const ObjectMotion<Real>& motion,
-                    const std::vector<Real>& travel2, const ContactLog& log,
-                    RowResponse<Real>& response) {
+void find_busy_rows(const ObjectRows<Real>& rows, const std::vector<Real>& travel2,
+                    const ContactLog& log, RowResponse<Real>& response) {
   assert(rows.rooms.size() == rows.all.size());
   response.busy.clear();
   response.pushed.clear();
-  const bool all = !is_still(motion, rows);
-  response.lone_apart = !all && !log.wanted();
+  response.lone_apart = !log.wants_each();
   response.lone = {};
   for_joint_rows(rows, response, [&](std::size_t r) {
-    if (all ? rows.all[r].responds : !(farthest2(rows.rooms[r], travel2) < rows.rooms[r].touch2))
+    const ContactRow<Real>& row = rows.all[r];
+    const RowRoom<Real>& room = rows.rooms[r];
+    if (row.mover != kNone ? row.responds : !(farthest2(room, travel2) < room.touch2))
       response.busy.push_back(r);
   });
 }
 
 template <class Real>
-LonePass<Real> lone_pass(RowReach<Real>& reach, ClothState<Real>& state, Real dt, bool pushes) {
-  return {state.x.data()->data(),
-          state.v.data()->data(),
-          dt,
-          Real(kTouchSlack),
-          pushes ? Real(kPushOutPart) : Real(0),
-          Real(kPushOutSpeed) * dt,
-          reach.x.data()->data(),
-          reach.reach.data(),
-          reach.travel2.data()};
+void respond_alone(ObjectSolve<Real>& solve, Real dt, bool pushes) {
+  if (!solve.response.lone_apart) return;
+  solve.response.lone = note_lone(
+      solve, [&] { return solve.rows.lone.respond(lone_pass(solve, dt, pushes), solve.executor); });
 }
 
 template <class Real>
-void push_out(Real smallest_gap, Real dt, Executor* executor, ObjectRows<Real>& rows,
-              RowReach<Real>& reach, RowResponse<Real>& response, ClothState<Real>& state) {
+void push_out(ObjectSolve<Real>& solve, Real smallest_gap, Real dt) {
+  ObjectRows<Real>& rows = solve.rows;
+  RowResponse<Real>& response = solve.response;
+  ClothState<Real>& state = solve.state;
   assert(response.pushed.empty() && dt > 0);
   // Where nothing moves, only pushes are taken back.
-  if (!response.lone_apart) response.x_unpushed = state.x;
+  const bool moves = !rows.moving.empty();
+  if (moves) response.x_unpushed = state.x;
   for (const std::size_t r : response.busy) {
     const ContactRow<Real>& row = rows.all[r];
     const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
-    if (response.lone_apart && response.pushed.empty()) response.x_unpushed = state.x;
+    if (!moves && response.pushed.empty()) response.x_unpushed = state.x;
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
     share_out<Real>(row, row.normal * step, state.x);
     response.pushed.push_back(r);
   }
   if (!response.pushed.empty()) take_back_pushes(rows, response.x_unpushed, smallest_gap, state.x);
   // A lone particle leaves the only plane that it could come too near to.
-  if (response.lone_apart)
-    response.lone = rows.lone.respond(lone_pass(reach, state, dt, true), executor);
+  respond_alone(solve, dt, true);
 }
 
 template <class Real>
@@ -257,8 +287,8 @@ Real sweep_rows(ObjectSolve<Real>& solve, bool again) {
   ObjectRows<Real>& rows = solve.rows;
   Real largest = 0;
   if (solve.response.lone_apart && !again) {
-    const LoneResponse<Real> lone =
-        rows.lone.sweep(lone_pass(solve.reach, solve.state, Real(0), false), solve.executor);
+    const LoneResponse<Real> lone = note_lone(
+        solve, [&] { return rows.lone.sweep(lone_pass(solve, Real(0), false), solve.executor); });
     largest = lone.largest;
     solve.friction_evaluations += lone.friction_evaluations;
   }
@@ -307,15 +337,14 @@ void bounce(ObjectSolve<Real>& solve, ClothGuard<Real>* guard) {
   sweep_rows(solve);
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                   \
-  template void find_busy_rows(const ObjectRows<Real>&, const ObjectMotion<Real>&,               \
-                               const std::vector<Real>&, const ContactLog&, RowResponse<Real>&); \
-  template decltype(lone_pass<Real>) lone_pass<Real>;                                            \
-  template void push_out(Real, Real, Executor*, ObjectRows<Real>&, RowReach<Real>&,              \
-                         RowResponse<Real>&, ClothState<Real>&);                                 \
-  template decltype(aim_rows<Real>) aim_rows<Real>;                                              \
-  template Real sweep_rows(ObjectSolve<Real>&, bool);                                            \
-  template decltype(solve_rows<Real>) solve_rows<Real>;                                          \
+#define WEFT_INSTANTIATE(Real)                                                    \
+  template void find_busy_rows(const ObjectRows<Real>&, const std::vector<Real>&, \
+                               const ContactLog&, RowResponse<Real>&);            \
+  template decltype(respond_alone<Real>) respond_alone<Real>;                     \
+  template void push_out(ObjectSolve<Real>&, Real, Real);                         \
+  template decltype(aim_rows<Real>) aim_rows<Real>;                               \
+  template Real sweep_rows(ObjectSolve<Real>&, bool);                             \
+  template decltype(solve_rows<Real>) solve_rows<Real>;                           \
   template decltype(bounce<Real>) bounce<Real>;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -37,6 +37,7 @@ struct RowResponse {
   std::vector<GrippedRow> gripped;  ///< by which one object holds
   std::vector<GrippedRow> braced;   ///< on the other side of what it presses on another one
   Vec3Array<Real> x_unpushed;       ///< positions before the push-out [m]
+  Vec3Array<Real> v_lone;           ///< velocities before lone rows respond, if told [m/s]
   std::vector<int> changed;         ///< the last sweep between jaws that moved each particle
 };
 
@@ -85,23 +86,21 @@ void for_joint_rows(const ObjectRows<Real>& rows, const RowResponse<Real>& respo
 }
 
 /// Lists the rows that can respond in this step: the others are farther from touching than their
-/// particles go. Where objects move, all may.
+/// particles go. Those of objects that move come nearer, and all count.
 /// @param travel2  squared displacement of each particle [m^2]
-/// @param log      if it wants impulses, rows report them one by one
+/// @param log      if it wants each impulse, rows respond one by one
 template <class Real>
-void find_busy_rows(const ObjectRows<Real>& rows, const ObjectMotion<Real>& motion,
-                    const std::vector<Real>& travel2, const ContactLog& log,
-                    RowResponse<Real>& response);
+void find_busy_rows(const ObjectRows<Real>& rows, const std::vector<Real>& travel2,
+                    const ContactLog& log, RowResponse<Real>& response);
 
-/// What lone rows work on.
+/// Lets lone rows respond, if they are processed apart.
 /// @param pushes  whether they push particles out
 template <class Real>
-LonePass<Real> lone_pass(RowReach<Real>& reach, ClothState<Real>& state, Real dt, bool pushes);
+void respond_alone(ObjectSolve<Real>& solve, Real dt, bool pushes);
 
 /// Pushes particles out that lack thickness, slowly and without giving them velocity.
 template <class Real>
-void push_out(Real smallest_gap, Real dt, Executor* executor, ObjectRows<Real>& rows,
-              RowReach<Real>& reach, RowResponse<Real>& response, ClothState<Real>& state);
+void push_out(ObjectSolve<Real>& solve, Real smallest_gap, Real dt);
 
 /// Sets the normal velocity that each row must reach: no farther down than the thickness within the
 /// step, and none when touching. Notes which points hit.

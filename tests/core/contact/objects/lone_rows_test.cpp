@@ -13,7 +13,8 @@
 #include "tests/support/worlds.h"
 
 // Contacts of single particles are worked on several at a time, with the bits that one after the
-// other gives. Whoever asks for contact forces is told by the rows one after the other.
+// other gives. The balance of energy wants each impulse, and there they respond one after the
+// other.
 
 using namespace weft;
 using test::Random;
@@ -39,20 +40,31 @@ WorldDef heap_of_shapes(double friction, unsigned seed) {
   return def;
 }
 
+/// What is told of contacts: nothing, mean forces, each impulse, or both of these.
+enum class Told { nothing, forces, each, both };
+
 struct Fall {
   std::uint64_t hash = 0, rubbed = 0;
+  std::vector<ContactPoint> contacts;  ///< of the last tick, if they are told
 };
 
+/// @param sweeps  the ball moves through the cloth
 template <class Real>
-Fall fall(const WorldDef& def, unsigned seed, bool told) {
+Fall fall(const WorldDef& def, unsigned seed, bool sweeps, Told told) {
   World<Real> world(def);
+  MoveDef across;
+  across.target.position = Vec3d(0.1, 0.25, 0.4);
+  across.speed = 0.5;
+  if (sweeps) REQUIRE(world.move_collider(1, across));
   Random random(seed);
   for (Vec3<Real>& v : world.state().v) v = random.vector(0.5).cast<Real>();
   world.accept_state();
-  world.measure_forces(told);
+  world.measure_forces(told == Told::forces || told == Told::both);
+  world.measure_energy(told == Told::each || told == Told::both);
   Fall result;
   for (int tick = 0; tick < 60; ++tick) result.rubbed += world.step().profile[Stage::friction].work;
   result.hash = world.hash();
+  if (world.reactions()) result.contacts = world.reactions()->contacts;
   return result;
 }
 
@@ -70,10 +82,29 @@ TEMPLATE_TEST_CASE("contacts worked on all at once leave the bits of one after t
   const unsigned seed = GENERATE(from_range(test::seeds(1, 4)));
   const test::Repeatable repeatable(seed);
   const WorldDef def = heap_of_shapes(friction, seed);
-  const Fall at_once = fall<TestType>(def, seed, false), singly = fall<TestType>(def, seed, true);
-  CHECK(at_once.hash == singly.hash);
-  CHECK(at_once.rubbed == singly.rubbed);
-  CHECK((at_once.rubbed > 0) == (friction > 0));
+  const bool sweeps = GENERATE(false, true);
+  const Fall singly = fall<TestType>(def, seed, sweeps, Told::each);
+  for (const Told told : {Told::nothing, Told::forces}) {
+    const Fall at_once = fall<TestType>(def, seed, sweeps, told);
+    CHECK(at_once.hash == singly.hash);
+    CHECK(at_once.rubbed == singly.rubbed);
+  }
+  CHECK((singly.rubbed > 0) == (friction > 0));
+}
+
+TEST_CASE("contacts worked on all at once are told with the forces of one after the other") {
+  const bool sweeps = GENERATE(false, true);
+  const WorldDef def = heap_of_shapes(0.4, 2);
+  const std::vector<ContactPoint> at_once = fall<float>(def, 2, sweeps, Told::forces).contacts,
+                                  singly = fall<float>(def, 2, sweeps, Told::both).contacts;
+  REQUIRE(at_once.size() == singly.size());
+  double most = 0;
+  for (const ContactPoint& contact : singly) most = std::max(most, contact.force().norm());
+  REQUIRE(most > 0);
+  for (std::size_t k = 0; k < singly.size(); ++k) {
+    CHECK(at_once[k].particle == singly[k].particle);
+    CHECK((at_once[k].force() - singly[k].force()).norm() < 1e-5 * most);
+  }
 }
 
 TEST_CASE("a large cloth on the ground has the same bits with one and two threads") {
