@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <utility>
@@ -77,11 +78,11 @@ WorldDef pressed_sheet(const Pressed& c) {
 }
 
 /// Sends the object down through the ground, which takes less than a second.
-void press(World<float>& world) {
+void press(World<float>& world, double speed = 0.1) {
   world.measure_forces(true);
   MoveDef down;
   down.target.position = Vec3d(0.003, 0, 0.002);
-  down.speed = 0.1;
+  down.speed = speed;
   REQUIRE(world.move_collider(1, down));
   test::advance(world, 1);
 }
@@ -97,6 +98,25 @@ std::array<Vec3d, 2> mean_forces(World<float>& world, int ticks) {
 }
 
 }  // namespace
+
+TEST_CASE("a finger that comes fast presses with its force, and shoves the cloth nowhere") {
+  for (const int particles : {16, 21, 31}) {
+    for (const auto& [force, speed] : {std::pair(20.0, 0.3), std::pair(5.0, 0.5)}) {
+      World<float> world(pressed_sheet({particles, 1e-3, force, true}));
+      const Vec3Array<float> start = world.state().x;
+      press(world, speed);
+      INFO(particles << " particles a side, " << speed << " m/s, " << force << " N");
+      for (int tick = 0; tick < 30; ++tick) {
+        world.step();
+        float farthest = 0;
+        for (std::size_t i = 0; i < start.size(); ++i)
+          farthest = std::max(farthest, (world.state().x[i] - start[i]).norm());
+        REQUIRE(farthest < 1e-3f);
+      }
+      CHECK(mean_forces(world, 10)[1][1] == Approx(force).epsilon(0.02));
+    }
+  }
+}
 
 TEST_CASE("an object presses a single layer on another with its force, and does not thin it") {
   for (const Pressed& c : {Pressed{}, Pressed{33, 5e-4, 50}, Pressed{13, 2e-3, 1, true},

@@ -53,21 +53,32 @@ double next_pace(const ColliderState& state, double resistance, double seconds) 
 }
 
 /// What is left of the step towards its goal of an object that pinches a layer against another one
-/// [m]: it goes no farther that way, but back to where the layer has its thickness, and presses
+/// [m]: it goes no farther that way, but to where the layer has its thickness, and presses
 /// with its force as long as its goal lies there. It moves on along the layer. Where layers beside
 /// resist with its force it does not press besides.
 /// @param seconds  of the last tick, whose impulses the state still has
 Vec3d step_along_pinch(const Vec3d& step, double seconds, ColliderState& state) {
   assert(!state.is_jaw() && seconds > 0);
+  const double most = kYieldSpeed * seconds;
+  if (state.pinch.isZero(0)) {
+    // What has let go for a moment is met again slowly.
+    const double ahead = state.forced ? 0 : std::max(step.dot(state.press) - most, 0.0);
+    const Vec3d left = step - state.press * ahead;
+    state.press.setZero();
+    state.hold = state.squeeze = 0;
+    return left;
+  }
   const double into = step.dot(state.pinch);
   const double resistance = std::max(0.0, state.impulse.dot(state.pinch) / seconds);
-  const bool presses = into > kPressingDepth && resistance < state.max_force && !state.forced;
+  const bool stands = into > kPressingDepth && !state.forced;
+  const bool presses = stands && resistance < state.max_force;
   state.press = presses ? state.pinch : Vec3d::Zero();
   state.hold = presses ? state.max_force : 0;
   state.squeeze = presses ? state.max_force - resistance : 0;
-  const double back = std::clamp(state.pinch_lack / 2, 0.0, kYieldSpeed * seconds);
+  const double back = std::clamp(state.pinch_lack / 2, -most, most);
+  const Vec3d left = stands ? Vec3d(step - state.pinch * (into + std::max(back, -into))) : step;
   state.forget_pinch();
-  return presses ? Vec3d(step - state.press * (into + back)) : step;
+  return left;
 }
 
 void clear_impulses(ColliderState& state) {
@@ -157,7 +168,7 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     const double fraction = fraction_of(left) * state.pace;
     state.twist = {left * (fraction / seconds), turn * (fraction / seconds)};
     state.goal = fraction == 1 ? wish->goal : moved(state.pose, state.twist, seconds);
-    if (fraction == 1 && state.blocked) state.goal.position = state.pose.position + left;
+    if (fraction == 1 && left != step) state.goal.position = state.pose.position + left;
   }
 }
 

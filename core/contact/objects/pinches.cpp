@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -12,6 +13,9 @@
 
 namespace weft {
 namespace {
+
+/// Two sides differ in flatness by less [1].
+constexpr double kAlike = 1e-4;
 
 /// First touch of a particle that has none yet.
 constexpr Index kNoTouch = kNone - 1;
@@ -73,37 +77,39 @@ void list_touches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
 
 /// Whether another object is behind each particle that carries a row of an object that comes. Adds
 /// the rows of these others.
-/// @param lack  set to what the layer lacks of its thickness, at most [m]
+/// @param lack  set to what the layer lacks of its thickness at the row's point [m]
 template <class Real>
 bool is_backed(const ObjectRows<Real>& rows, const Vec3Array<Real>& x, PinchRow& front,
                Pinches& pinches, Real& lack) {
   const ContactRow<Real>& row = rows.all[front.row];
-  Real behind = std::numeric_limits<Real>::lowest();
+  Real behind = 0, weights = 0;
   const std::size_t known = pinches.backs.size();
   for (std::size_t k = 0; k < row.count; ++k) {
     if (!(row.weight[k] > Real(kCarries))) continue;
-    bool backed = false;
+    Real most = std::numeric_limits<Real>::lowest();  // that this particle lacks behind it
     Index at = pinches.first_touch[at_index(row.particle[k])];
     for (; at != kNoTouch; at = pinches.touches[at_index(at)].next) {
       const std::size_t r = pinches.touches[at_index(at)].row;
       const ContactRow<Real>& other = rows.all[r];
       if (other.collider == row.collider || !(other.normal.dot(row.normal) < -Real(kFacing)))
         continue;
-      backed = true;
       pinches.backs.push_back({r, front.object, front.object});
       front.other = at_index(other.collider);
-      behind = std::max(behind, other.thickness - gap_of(other, x));
+      most = std::max(most, other.thickness - gap_of(other, x));
     }
-    if (backed) continue;
-    pinches.backs.resize(known);
-    return false;
+    if (most == std::numeric_limits<Real>::lowest()) {
+      pinches.backs.resize(known);
+      return false;
+    }
+    behind += row.weight[k] * most;
+    weights += row.weight[k];
   }
-  lack = behind + row.thickness - gap_of(row, x);
+  assert(weights > 0 && "one of three particles carries a third");
+  lack = behind / weights + row.thickness - gap_of(row, x);
   return true;
 }
 
-/// Mean normal of the rows on one side of what object `k` pinches. The flatter that side is, the
-/// nearer is its length to 1.
+/// Mean normal of the rows on one side of what object `k` pinches.
 template <class Real>
 Vec3d mean_normal(std::size_t k, const ObjectRows<Real>& rows, const std::vector<PinchRow>& side) {
   Vec3d sum = Vec3d::Zero();
@@ -117,12 +123,34 @@ Vec3d mean_normal(std::size_t k, const ObjectRows<Real>& rows, const std::vector
   return sum / count;
 }
 
-/// Direction in which object `k` presses what it pinches: across the flatter of both sides, unit.
+/// How flat a collider is where cloth is near: squared length of the mean of all its rows' normals,
+/// 0..1. The few rows that touch would not tell: one alone is always flat.
 template <class Real>
-Vec3d direction_of(std::size_t k, const ObjectRows<Real>& rows, const Pinches& pinches) {
-  const Vec3d front = mean_normal(k, rows, pinches.fronts);
-  const Vec3d back = mean_normal(k, rows, pinches.backs);
-  return (front.squaredNorm() < back.squaredNorm() ? Vec3d(-back) : front).normalized();
+double flatness(std::size_t collider, const ObjectRows<Real>& rows) {
+  Vec3d sum = Vec3d::Zero();
+  int count = 0;
+  for (const ContactRow<Real>& row : rows.all) {
+    if (at_index(row.collider) != collider) continue;
+    sum += row.normal.template cast<double>();
+    ++count;
+  }
+  assert(count > 0);
+  return (sum / count).squaredNorm();
+}
+
+/// Direction in which object `k` presses what it pinches: across the flatter of both sides, unit.
+/// Across the other one it would slide off to a side. Of sides alike it is the one that it comes
+/// towards.
+template <class Real>
+Vec3d direction_of(std::size_t k, const Vec3d& wanted, const ObjectRows<Real>& rows,
+                   const Pinches& pinches) {
+  const Vec3d front = mean_normal(k, rows, pinches.fronts).normalized();
+  const Vec3d back = -mean_normal(k, rows, pinches.backs).normalized();
+  const auto is_of_k = [k](const PinchRow& row) { return row.object == k; };
+  const auto any = std::find_if(pinches.fronts.begin(), pinches.fronts.end(), is_of_k);
+  const double before = flatness(k, rows), behind = flatness(any->other, rows);
+  if (std::abs(before - behind) > kAlike) return before < behind ? back : front;
+  return wanted.dot(front) < wanted.dot(back) ? back : front;
 }
 
 /// Removes rows that several particles have brought.
@@ -141,15 +169,16 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
                   ObjectMotion<Real>& motion, Pinches& pinches) {
   assert(motion.colliders);
   ColliderStates& colliders = *motion.colliders;
-  for (ColliderState& collider : colliders) collider.forget_pinch();
+  // What was pinched earlier in this tick counts as pinched if it lets go for some substeps.
+  constexpr double kUnknown = std::numeric_limits<double>::lowest();
+  for (ColliderState& collider : colliders) collider.pinch_lack = kUnknown;
   for (const Index i : pinches.particles) pinches.first_touch[at_index(i)] = kNone;
   pinches.particles.clear();
   pinches.fronts.clear();
   pinches.backs.clear();
   pinches.touches.clear();
   list_fronts(rows, x, colliders, pinches);
-  if (pinches.fronts.empty()) return;
-  list_touches(rows, x, colliders, pinches);
+  if (!pinches.fronts.empty()) list_touches(rows, x, colliders, pinches);
   std::size_t backed = 0;
   for (std::size_t n = 0; n < pinches.fronts.size(); ++n) {
     PinchRow& front = pinches.fronts[n];
@@ -164,8 +193,13 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
   remove_doubles(pinches.backs);
   for (const PinchRow& back : pinches.backs)
     colliders[at_index(rows.all[back.row].collider)].braces = true;
-  for (std::size_t k = 0; k < colliders.size(); ++k)
-    if (!colliders[k].pinch.isZero(0)) colliders[k].pinch = direction_of(k, rows, pinches);
+  for (std::size_t k = 0; k < colliders.size(); ++k) {
+    ColliderState& object = colliders[k];
+    if (object.pinch_lack == kUnknown)
+      object.pinch_lack = 0;
+    else
+      object.pinch = direction_of(k, object.wanted.linear, rows, pinches);
+  }
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(find_pinches)
