@@ -83,7 +83,7 @@ test('an operator that may not hold gives itself a hand by one click', bounded, 
     await offer.click();
     await until(async () => !(await offer.isVisible()), 'it goes with the hand');
     await open_list(ada);
-    assert.ok(await own.isChecked());
+    await until(() => own.isChecked(), 'the list shows it');
   }));
 
 test("another's cursor is drawn on the cloth with a name", bounded, () =>
