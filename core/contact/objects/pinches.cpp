@@ -185,7 +185,6 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
     Real lack = 0;
     if (!is_backed(rows, x, front, pinches, lack)) continue;
     ColliderState& object = colliders[front.object];
-    object.pinch = rows.all[front.row].normal.template cast<double>();
     object.pinch_lack = std::max(object.pinch_lack, static_cast<double>(lack));
     pinches.fronts[backed++] = front;
   }
