@@ -163,7 +163,7 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
       const Vec3d offset = middle.rotation * offset_of_jaw(gripper.def, k, opening);
       jaw.move = MoveDef{
           {middle.position + offset, middle.rotation}, kMostColliderSpeed, kMostColliderTurnSpeed};
-      jaw.pace = 1;
+      jaw.pace = {};
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
       jaw.press = press_of(gripper, k);
       jaw.hold = gripper.gripping ? gripper.force : 0;

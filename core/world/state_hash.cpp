@@ -28,13 +28,19 @@ std::array<double, 9> numbers_of(const Pose& pose, double first, double second) 
 /// A collider that never moved adds nothing.
 void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
           const ColliderState& state) {
-  if (state.pose == rest_pose(def.shape) && !state.move && state.pace == 1) return;
-  const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace);
+  if (state.pose == rest_pose(def.shape) && !state.move && state.pace.is_full()) return;
+  const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace.along);
   feed(hash, own.data(), own.size());
+  if (state.pace.into != 1) {
+    feed(hash, &state.pace.into, 1);
+    feed(hash, state.pace.against.data(), 3);
+    feed(hash, &state.pace.yielded, 1);
+  }
   if (state.overload > 0) feed(hash, &state.overload, 1);
-  if (!state.pinch.isZero(0)) {
-    feed(hash, state.pinch.data(), 3);
-    feed(hash, &state.pinch_lack, 1);
+  if (state.pinches()) {
+    feed(hash, state.pinch.direction.data(), 3);
+    feed(hash, &state.pinch.lack, 1);
+    feed(hash, &state.pinch.other, 1);
     feed(hash, &state.impulse, 1);  // which is left of its force
   }
   if (state.is_jaw() && state.hold > 0)

@@ -87,6 +87,13 @@ void press(World<float>& world, double speed = 0.1) {
   test::advance(world, 1);
 }
 
+Vec3d momentum_of(const World<float>& world) {
+  Vec3d sum = Vec3d::Zero();
+  for (std::size_t i = 0; i < world.state().v.size(); ++i)
+    sum += world.model().mass[i] * world.state().v[i].cast<double>();
+  return sum;
+}
+
 /// Mean forces on the ground and the object in some ticks [N].
 std::array<Vec3d, 2> mean_forces(World<float>& world, int ticks) {
   std::array<Vec3d, 2> mean = {Vec3d::Zero(), Vec3d::Zero()};
@@ -136,6 +143,54 @@ TEST_CASE("an object presses a single layer on another with its force, and does 
     test::advance(world, 0.2);
     CHECK(world.reactions()->colliders[1].norm() == 0);
     CHECK(world.reactions()->colliders[0][1] == Approx(-weight).epsilon(0.02));
+  }
+}
+
+TEST_CASE("an object presses a layer with its force by every solver, in as few substeps") {
+  for (const SolverKind kind : {SolverKind::verlet, SolverKind::implicit, SolverKind::relaxation}) {
+    for (const int substeps : {1, 2, 8}) {
+      WorldDef def = pressed_sheet({});
+      def.solver.kind = kind;
+      def.implicit.substeps = substeps;
+      def.relaxation.compliance = 1;
+      def.relaxation.substeps = substeps;
+      World<float> world(def);
+      press(world);
+      INFO("solver " << static_cast<int>(kind) << ", " << substeps << " substeps");
+      CHECK(mean_forces(world, 10)[1][1] == Approx(5).epsilon(0.02));
+    }
+  }
+}
+
+TEST_CASE("of two objects that press a layer between them the weaker one gives way") {
+  for (const auto& [below, above] :
+       {std::pair(4.0, 2.0), std::pair(2.0, 4.0), std::pair(3.0, 3.0)}) {
+    Pressed c;
+    c.on_table = true;
+    c.max_force = above;
+    WorldDef def = pressed_sheet(c);
+    def.colliders[0].max_force = below;
+    World<float> world(def);
+    MoveDef up;
+    up.target.position = Vec3d(0, 0.2, 0);
+    up.speed = 0.1;
+    REQUIRE(world.move_collider(0, up));
+    press(world);
+    const double start = world.colliders()[1].pose.position[1];
+    Vec3d momentum = momentum_of(world);
+    constexpr int kTicks = 60;
+    const auto [table, object] = mean_forces(world, kTicks);
+    momentum = momentum_of(world) - momentum;
+    const double rise = world.colliders()[1].pose.position[1] - start;
+    INFO("from below " << below << " N, from above " << above << " N");
+    const double weight = 0.008 * 9.81, least = std::min(below - weight, above);
+    const double pushed = -(table + object)[1] - weight;  // on the cloth
+    CHECK(pushed == Approx(momentum[1] * 60 / kTicks).margin(0.01 * least));
+    CHECK(object[1] == Approx(least).epsilon(0.02));
+    if (below == above)
+      CHECK(std::abs(rise) < 1e-4);
+    else
+      CHECK(rise * (below - above) > 4e-3);  // the same way as the stronger one
   }
 }
 
@@ -223,5 +278,33 @@ TEST_CASE("an object that layers resist presses them with its force, to 15 % aft
     }
     INFO(layers << " layers of " << thickness << " m");
     CHECK(std::abs(pressed) == Approx(max_force).epsilon(0.15));
+  }
+}
+
+TEST_CASE(
+    "an object that goes along layers presses them with its force at most, wherever it goes") {
+  for (const double depth : {1e-4, 1e-3, 2e-2}) {
+    for (const double max_force : {2.0, 5.0}) {
+      World<float> world(plate_on_layers(2, 1e-3, max_force));
+      world.measure_forces(true);
+      MoveDef move;
+      move.target.position = Vec3d(0, 0.022 - depth, 0);
+      move.speed = 0.1;
+      REQUIRE(world.move_collider(1, move));
+      test::advance(world, 2);
+      move.target.position[0] = 0.04;
+      REQUIRE(world.move_collider(1, move));
+      for (int second = 0; second < 3; ++second) {
+        constexpr int kTicks = 60;
+        double pressed = 0;
+        for (int t = 0; t < kTicks; ++t) {
+          world.step();
+          pressed -= world.reactions()->colliders[1][1] / kTicks;
+        }
+        INFO(depth << " m deep, " << max_force << " N, second " << second);
+        CHECK(std::abs(pressed) < 1.2 * max_force);
+      }
+      CHECK(world.colliders()[1].pose.position[0] == Approx(0.04).margin(1e-3));
+    }
   }
 }

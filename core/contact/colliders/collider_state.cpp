@@ -39,17 +39,70 @@ double surface_speed(const ColliderState& state) {
   return state.wanted.linear.norm() + (turn > 0 ? turn * state.radius : 0);
 }
 
+/// The part of a displacement or velocity that goes into what resists.
+Vec3d part_into(const Vec3d& motion, const Pace& pace) {
+  return pace.against * std::max(0.0, motion.dot(pace.against));
+}
+
 /// Pace in the next tick. What layers resist with grows on while an object stands before them: it
-/// yields until they resist with its force. Jaws yield by their opening.
+/// yields until they resist with its force, and then goes back to them slowly. Jaws yield by their
+/// opening.
+/// @param pace        in the last tick
 /// @param resistance  over its force [1]
-double next_pace(const ColliderState& state, double resistance, double seconds) {
-  const double pace = std::max(state.pace, 0.0);
-  if (!(resistance > 1))
-    return std::min(1.0, pace + kPaceGain * seconds * (1 - std::max(0.0, resistance)));
+/// @param speed       wanted [m/s]
+/// @param yielded     how far it has yielded [m]
+double next_pace(const ColliderState& state, double pace, double resistance, double speed,
+                 double yielded, double seconds) {
+  if (!(resistance > 1)) {
+    const double regained = kPaceGain * seconds * (1 - std::max(0.0, resistance));
+    const double most = std::min(1.0, std::max(pace, 0.0) + regained);
+    if (!(yielded > 0)) return most;
+    const double least = kTurningSpeed / speed;
+    const double growth = std::pow(kPaceGrowth, seconds / kPaceSeconds);
+    return std::min(most, pace > 0 ? std::max(pace, least) * growth : least);
+  }
   const double slowed = pace / (1 + (resistance - 1) * std::min(seconds / kPaceSeconds, 1.0));
-  if (slowed >= kLeastColliderPace) return slowed;
+  if (slowed >= kLeastColliderPace && !state.blocked) return slowed;
   if (!state.press.isZero(0)) return 0;
-  return -std::min(1.0, std::min(resistance - 1, 1.0) * kYieldSpeed / surface_speed(state));
+  return -std::min(1.0, std::min(resistance - 1, kMostYielding) * kYieldSpeed / speed);
+}
+
+/// Paces in the next tick, by the impulses of the last one.
+Pace next_paces(const ColliderState& state, double max_force, double seconds) {
+  Pace next = state.pace;
+  const double pushed = state.pushed.norm(), most = max_force * seconds;
+  if (pushed > 0) next.against = state.pushed / pushed;
+  const Vec3d into = part_into(state.wanted.linear, next);
+  if (!into.isZero(0))
+    next.into = next_pace(state, next.into, pushed / most, state.wanted.linear.norm(), next.yielded,
+                          seconds);
+  else
+    next.into = 1;
+  const Vec3d along = state.wanted.linear - into;
+  const double turn = state.wanted.angular.norm();
+  const double speed = along.norm() + (turn > 0 ? turn * state.radius : 0);
+  const double work = state.impulse.dot(along) + state.angular_impulse.dot(state.wanted.angular);
+  const double resistance = speed > 0 ? work / (speed * most) : 0;
+  next.along = next_pace(state, next.along, resistance, speed, 0, seconds);
+  if (pushed == 0 && next.into == 1) {
+    next.against.setZero();
+    next.yielded = 0;
+  }
+  return next;
+}
+
+/// Of two objects that press a layer against each other the weaker one gives way slowly, and the
+/// stronger one follows.
+/// @param step  towards its goal, along the pinch [m]
+/// @param most  that either moves [m]
+/// @return how far an object goes along its pinch [m]
+double advance_against(const ColliderState& state, double step, double most,
+                       const ColliderStates& states) {
+  assert(state.pinches() && most >= 0);
+  const ColliderState& other = states[at_index(state.pinch.other)];
+  if (other.is_jaw() || !is_opposed(state, other)) return 0;
+  if (state.max_force < other.max_force) return -most;
+  return state.max_force > other.max_force ? std::clamp(step, 0.0, most) : 0;
 }
 
 /// What is left of the step towards its goal of an object that pinches a layer against another one
@@ -57,10 +110,11 @@ double next_pace(const ColliderState& state, double resistance, double seconds) 
 /// with its force as long as its goal lies there. It moves on along the layer. Where layers beside
 /// resist with its force it does not press besides.
 /// @param seconds  of the last tick, whose impulses the state still has
-Vec3d step_along_pinch(const Vec3d& step, double seconds, ColliderState& state) {
+Vec3d step_along_pinch(const Vec3d& step, double seconds, const ColliderStates& states,
+                       ColliderState& state) {
   assert(!state.is_jaw() && seconds > 0);
   const double most = kYieldSpeed * seconds;
-  if (state.pinch.isZero(0)) {
+  if (!state.pinches()) {
     // What has let go for a moment is met again slowly.
     const double ahead = state.forced ? 0 : std::max(step.dot(state.press) - most, 0.0);
     const Vec3d left = step - state.press * ahead;
@@ -68,22 +122,36 @@ Vec3d step_along_pinch(const Vec3d& step, double seconds, ColliderState& state) 
     state.hold = state.squeeze = 0;
     return left;
   }
-  const double into = step.dot(state.pinch);
-  const double resistance = std::max(0.0, state.impulse.dot(state.pinch) / seconds);
+  const Vec3d& pinch = state.pinch.direction;
+  const double into = step.dot(pinch);
+  const double resistance = std::max(0.0, state.impulse.dot(pinch) / seconds);
   const bool stands = into > kPressingDepth && !state.forced;
   const bool presses = stands && resistance < state.max_force;
-  state.press = presses ? state.pinch : Vec3d::Zero();
+  const double advance = presses ? advance_against(state, into, most, states) : 0;
+  state.press = presses ? pinch : Vec3d::Zero();
   state.hold = presses ? state.max_force : 0;
   state.squeeze = presses ? state.max_force - resistance : 0;
-  const double back = std::clamp(state.pinch_lack / 2, -most, most);
-  const Vec3d left = stands ? Vec3d(step - state.pinch * (into + std::max(back, -into))) : step;
+  const double back = std::clamp(state.pinch.lack / 2, -most, most);
+  const Vec3d left = stands ? Vec3d(step - pinch * (into - advance + std::max(back, -into))) : step;
   state.forget_pinch();
   return left;
 }
 
+/// What its pace leaves of a motion. What yields fast does nothing else.
+Twist slowed(const Twist& motion, double seconds, Pace& pace) {
+  assert(seconds > 0);
+  if (pace.is_full()) return motion;
+  const double speed = motion.linear.norm(), yielding = std::max(0.0, -pace.into * speed);
+  const double along = pace.along * std::max(0.0, 1 - yielding / kOnlyYields);
+  const Vec3d into = part_into(motion.linear, pace);
+  const Vec3d left = yielding > 0 ? Vec3d(pace.against * -yielding) : Vec3d(into * pace.into);
+  pace.yielded = std::max(0.0, pace.yielded - left.dot(pace.against) * seconds);
+  return {left + (motion.linear - into) * along, motion.angular * along};
+}
+
 void clear_impulses(ColliderState& state) {
-  for (Vec3d* sum : {&state.impulse, &state.angular_impulse, &state.counted, &state.angular_counted,
-                     &state.squeezed})
+  for (Vec3d* sum : {&state.impulse, &state.pushed, &state.angular_impulse, &state.counted,
+                     &state.angular_counted, &state.squeezed})
     sum->setZero();
 }
 
@@ -141,7 +209,8 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
   assert(time >= 0 && seconds > 0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
-    assert(state.pace >= -1 && state.pace <= 1);
+    assert(std::min(state.pace.into, state.pace.along) >= -1);
+    assert(std::max(state.pace.into, state.pace.along) <= 1);
     state.start = state.goal = state.pose;
     state.start_overload = state.overload;
     state.wanted = state.twist = {};
@@ -150,7 +219,7 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     state.bracing = state.braces;
     const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
     const Vec3d step = wish ? Vec3d(wish->goal.position - state.pose.position) : Vec3d::Zero();
-    Vec3d left = state.is_jaw() ? step : step_along_pinch(step, seconds, state);
+    Vec3d left = state.is_jaw() ? step : step_along_pinch(step, seconds, states, state);
     clear_impulses(state);
     state.blocked = !state.is_jaw() && !state.press.isZero(0);
     if (!wish) continue;
@@ -163,12 +232,14 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     };
     const double all = fraction_of(step);
     state.wanted = {step * (all / seconds), turn * (all / seconds)};
-    if (state.wanted.is_zero() || state.forced) state.pace = 1;
-    if (state.pace < 0) left = step;  // it yields
-    const double fraction = fraction_of(left) * state.pace;
-    state.twist = {left * (fraction / seconds), turn * (fraction / seconds)};
-    state.goal = fraction == 1 ? wish->goal : moved(state.pose, state.twist, seconds);
-    if (fraction == 1 && left != step) state.goal.position = state.pose.position + left;
+    if (state.wanted.is_zero() || state.forced) state.pace = {};
+    if (state.pace.yields()) left = step;
+    const double fraction = fraction_of(left);
+    const bool arrives = fraction == 1 && state.pace.is_full();
+    state.twist =
+        slowed({left * (fraction / seconds), turn * (fraction / seconds)}, seconds, state.pace);
+    state.goal = arrives ? wish->goal : moved(state.pose, state.twist, seconds);
+    if (arrives && left != step) state.goal.position = state.pose.position + left;
   }
 }
 
@@ -190,8 +261,10 @@ bool count_resistance(double seconds, ColliderState& state) {
   state.counted = state.impulse;
   state.angular_counted = state.angular_impulse;
   if (state.wanted.is_zero()) return false;
-  const double resisted =
+  const double along =
       (impulse.dot(state.wanted.linear) + angular.dot(state.wanted.angular)) / surface_speed(state);
+  const bool presses = state.wanted.linear.dot(state.pace.against) > 0;
+  const double resisted = std::max(along, presses ? impulse.dot(state.pace.against) : 0);
   const double most = state.max_force * kImpactSeconds;
   state.overload =
       std::clamp(state.overload + resisted - state.max_force * seconds, 0.0, most * kMostOverload);
@@ -214,11 +287,7 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
     ColliderState& state = states[k];
     state.force = -(state.impulse + state.squeezed) / seconds;
     if (state.wanted.is_zero()) continue;
-    const double most = colliders[k].max_force;
-    const double work =
-        state.impulse.dot(state.wanted.linear) + state.angular_impulse.dot(state.wanted.angular);
-    const double resistance = work / (seconds * surface_speed(state));
-    state.pace = next_pace(state, resistance / most, seconds);
+    state.pace = next_paces(state, colliders[k].max_force, seconds);
   }
 }
 

@@ -10,13 +10,32 @@
 
 namespace weft {
 
+/// A single layer of cloth between a collider and another one.
+struct Pinch {
+  Vec3d direction = Vec3d::Zero();  ///< unit, towards the other collider; zero: there is none
+  double lack = 0;                  ///< most that the layer lacks of its thickness [m]
+  Index other = kNone;              ///< the other collider
+};
+
+/// Fractions of a collider's speed that the resistance of the cloth leaves, -1..1; less than 0: it
+/// yields. Layers that bear it resist with many times what sliding over them takes, so motion into
+/// what resists and motion along it are slowed apart.
+struct Pace {
+  Vec3d against = Vec3d::Zero();  ///< unit, into what resists; zero: nothing does
+  double into = 1;                ///< that way
+  double along = 1;               ///< across it, and of its rotation
+  double yielded = 0;             ///< that way, and not regained yet [m]
+
+  bool is_full() const { return into == 1 && along == 1; }
+  bool yields() const { return into < 0 || along < 0; }
+};
+
 /// Present state of a collider. Its motion is planned for a tick, with a constant twist, and
 /// executed per substep by contact, which may hold it back.
 struct ColliderState {
   Pose pose;
   std::optional<MoveDef> move;  ///< the command that overrides its keyframes
-  /// Fraction of its speed left by the resistance of the cloth, -1..1; less than 0: it yields.
-  double pace = 1;
+  Pace pace;
 
   // The running tick.
   Pose start, goal;      ///< at its start; at its end, unless the collider is held back
@@ -27,13 +46,13 @@ struct ColliderState {
   bool forced = false;   ///< not held back in this tick
   bool voided = false;   ///< has moved on through cloth since the start: nothing is promised
   Vec3d impulse = Vec3d::Zero();          ///< given to the cloth so far [N s]
+  Vec3d pushed = Vec3d::Zero();           ///< its part along the normals of contacts [N s]
   Vec3d angular_impulse = Vec3d::Zero();  ///< about the pivot [N m s]
 
   // What it pinches, of the last substep.
-  Vec3d pinch = Vec3d::Zero();  ///< unit direction towards another object, a layer between; or zero
-  double pinch_lack = 0;        ///< most that the layer there lacks of its thickness [m]
-  bool braces = false;          ///< another object pinches cloth against it
-  bool bracing = false;         ///< one does and presses, in the running tick
+  Pinch pinch;
+  bool braces = false;   ///< another object pinches cloth against it
+  bool bracing = false;  ///< one does and presses, in the running tick
 
   // For the jaw of a gripper, and what presses cloth on another object.
   Vec3d press = Vec3d::Zero();     ///< unit pressing direction; zero: it does not press
@@ -55,9 +74,9 @@ struct ColliderState {
   Vec3d force = Vec3d::Zero();  ///< of the cloth on it, mean of the last tick [N]
 
   bool is_moving() const { return !twist.is_zero(); }
+  bool pinches() const { return pinch.other != kNone; }
   void forget_pinch() {
-    pinch.setZero();
-    pinch_lack = 0;
+    pinch = {};
     braces = false;
   }
   bool is_jaw() const { return mate != kNone; }
@@ -66,6 +85,11 @@ struct ColliderState {
 };
 
 using ColliderStates = std::vector<ColliderState>;
+
+/// Whether two objects press against each other.
+inline bool is_opposed(const ColliderState& a, const ColliderState& b) {
+  return a.press.dot(b.press) < 0;
+}
 
 /// Reference point of a collider's pose and rotation: the centre of a sphere or box, the middle of
 /// a capsule, the point of a plane, the centre of the box around a mesh [m].

@@ -44,9 +44,27 @@ inline constexpr double kPaceSeconds = 1.0 / 60;
 /// before cloth that resists. Smaller: it creeps on.
 inline constexpr double kLeastColliderPace = 0.01;
 
-/// Speed at which an object yields to twice its force or more, and in proportion to less [m/s].
+/// Speed at which an object yields to twice its force, and in proportion to more and less [m/s].
 /// Larger: it lets go of layers for moments. Smaller: it presses too hard for longer.
 inline constexpr double kYieldSpeed = 0.01;
+
+/// Most times that speed [1]. Larger: what was jammed for a moment throws it back. Smaller: layers
+/// that ruck up under it are crushed.
+inline constexpr double kMostYielding = 10;
+
+/// An object that yields at this speed does not move along what resists [m/s], at less it does in
+/// part. Larger: it drags layers on that jam under it. Smaller: it sticks where it presses with its
+/// force.
+inline constexpr double kOnlyYields = 0.005;
+
+/// Speed at which an object that has yielded goes back at first [m/s]. Larger: it misses its
+/// force by more on stiff layers. Smaller: it finds it later.
+inline constexpr double kTurningSpeed = 2e-4;
+
+/// Growth of the speed of an object that goes back, in `kPaceSeconds` [1]: it meets what it has
+/// yielded to at a speed in proportion to how far it has yielded, and so each time more softly.
+/// Larger: it overshoots its force. At 1 it never gains speed.
+inline constexpr double kPaceGrowth = 1.15;
 
 /// Resistance beyond the force for a shorter time is an impact [s]: its impulse leaves the force no
 /// time to act. Larger: a collider drives deeper into a pile before it is held. Smaller: light

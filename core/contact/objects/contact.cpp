@@ -36,6 +36,7 @@ Contact<Real>::Contact(const std::vector<ContactDef>& cloths,
 template <class Real>
 void Contact<Real>::reset() {
   clearance_.collected = reach_.made = resolved_ = false;
+  settled_ = true;
   clearance_.distance.clear();
   rows_.all.clear();
   rows_.moving.clear();
@@ -190,8 +191,8 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     find_busy_rows(rows_, reach_.travel2, log_, response_);
     push_out(solve, clearance_.smallest_gap, dt);
     aim_rows(solve, shapes_, dt);
-    // The kicks at the ends of a tick are halves, and friction has half as much to hold there.
-    if (motion_.any_press) share_hold(solve, shapes_, motion_.first_substep ? dt / 2 : dt);
+    // Where ticks end with half a kick they begin with one, and friction has half as much to hold.
+    if (motion_.any_press) share_hold(solve, shapes_, settled_ ? dt / 2 : dt);
     solve_rows(solve, dt, guard);
     bounce(solve, guard);
     profile[Stage::friction].work += solve.friction_evaluations;
@@ -201,7 +202,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     guard->respond_alone(state, dt);
     certify_drift(state, dt, true);
   }
-  motion_.first_substep = false;
+  settled_ = false;
   if (!motion_.any_tracked || !guard) return;
   stops_.x = state.x;
   stops_.v = state.v;
@@ -235,6 +236,7 @@ template <class Real>
 void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
                            ClothGuard<Real>* guard) {
   assert(!resolved_ || !motion_.any_tracked);
+  settled_ = true;
   if (rows_.all.empty()) {
     if (guard) guard->sweep(state);
     return;

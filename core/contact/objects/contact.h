@@ -157,6 +157,7 @@ class Contact {
   MoverStops<Real> stops_;
   /// `resolve` was called for the coming drift, and `move_objects` not yet.
   bool resolved_ = false;
+  bool settled_ = true;  ///< the last tick has been settled, and nothing resolved since
 
   ContactLog log_;
 };

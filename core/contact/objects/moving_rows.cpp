@@ -9,12 +9,14 @@
 namespace weft {
 
 template <class Real>
-void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Vec3<Real>& change,
-                   ObjectMotion<Real>& motion) {
+void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Vec3<Real>& normal,
+                   const Vec3<Real>& change, ObjectMotion<Real>& motion) {
   assert(motion.colliders && row.mobility > 0);
   ColliderState& state = (*motion.colliders)[row.collider];
   const Vec3d impulse = (change / row.mobility).template cast<double>();
+  const Vec3d along = normal.template cast<double>();
   state.impulse += impulse;
+  state.pushed += along * along.dot(impulse);
   state.angular_impulse += (point.template cast<double>() - state.pose.position).cross(impulse);
   motion.work += impulse.dot(row.surface.template cast<double>());
 }

@@ -44,10 +44,11 @@ Real height_after(const ObjectRows<Real>& rows, const ObjectShapes<Real>& shapes
 
 /// Books what an object gave to the cloth: impulse and work.
 /// @param point   of the row [m]
+/// @param normal  of the row
 /// @param change  of its velocity [m/s]
 template <class Real>
-void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Vec3<Real>& change,
-                   ObjectMotion<Real>& motion);
+void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Vec3<Real>& normal,
+                   const Vec3<Real>& change, ObjectMotion<Real>& motion);
 
 /// Turns the rows that go with objects, after these have moved.
 template <class Real>

@@ -13,7 +13,7 @@ namespace {
 
 /// Whether an object goes on into what it pinches, until the next tick presses instead.
 bool goes_into_pinch(const ColliderState& state) {
-  return state.press.isZero(0) && state.twist.linear.dot(state.pinch) > 0;
+  return state.press.isZero(0) && state.twist.linear.dot(state.pinch.direction) > 0;
 }
 
 /// Objects that have been resisted by more than their force stand in the coming substep, and both
@@ -23,7 +23,8 @@ void stop_overloaded(double dt, ColliderStates& colliders, ObjectShapes<Real>& s
   for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
     ColliderFrame<Real>& frame = shapes.frames[k];
     if (frame.tracked && goes_into_pinch(colliders[k])) frame.rest = std::max(frame.rest, 1);
-    if (!frame.tracked || !count_resistance(dt, colliders[k]) || colliders[k].pace < 0) continue;
+    if (!frame.tracked || !count_resistance(dt, colliders[k]) || colliders[k].pace.yields())
+      continue;
     frame.rest = std::max(frame.rest, 1);
     if (colliders[k].mate == kNone) continue;
     ColliderFrame<Real>& mate = shapes.frames[at_index(colliders[k].mate)];
@@ -41,7 +42,6 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
   motion.colliders = colliders;
   motion.work = 0;
   motion.any_tracked = motion.any_press = false;
-  motion.first_substep = true;
   motion.surface_speed = 0;
   if (!colliders) {
     for (ColliderFrame<Real>& frame : shapes.frames) frame.tracked = false;

@@ -14,14 +14,13 @@ template <class Real>
 struct ObjectMotion {
   ColliderStates* colliders = nullptr;  ///< null: all stand as defined
   Real tick_seconds = 0;
-  bool any_tracked = false;   ///< one of them moves in this tick
-  bool any_press = false;     ///< one of them presses, as jaws do
-  bool first_substep = true;  ///< of the tick
-  Real surface_speed = 0;     ///< of the fastest [m/s]
-  Real since_pairs = 0;       ///< longest displacement since the pairs were collected [m]
-  Real since_rows = 0;        ///< since the rows were made, with the coming substep [m]
-  Real coming = 0;            ///< in the coming substep alone [m]
-  double work = 0;            ///< on the cloth in this tick [J]
+  bool any_tracked = false;  ///< one of them moves in this tick
+  bool any_press = false;    ///< one of them presses, as jaws do
+  Real surface_speed = 0;    ///< of the fastest [m/s]
+  Real since_pairs = 0;      ///< longest displacement since the pairs were collected [m]
+  Real since_rows = 0;       ///< since the rows were made, with the coming substep [m]
+  Real coming = 0;           ///< in the coming substep alone [m]
+  double work = 0;           ///< on the cloth in this tick [J]
 
   /// No object moves, or has moved since the lists were made.
   bool is_still() const {

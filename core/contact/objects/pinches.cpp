@@ -30,12 +30,21 @@ Real gap_of(const ContactRow<Real>& row, const Vec3Array<Real>& x) {
   return row.normal.dot(weighted(row, x)) - row.offset;
 }
 
+/// Whether a row is near enough to be one side of a pinch: the other one may have been pressed into
+/// the thickness, and lets go only slowly.
 template <class Real>
-bool is_touching(const ContactRow<Real>& row, const Vec3Array<Real>& x) {
-  return row.responds && gap_of(row, x) < row.thickness * Real(1 + kSqueezed) + Real(kTouchSlack);
+bool is_near(const ContactRow<Real>& row, const Vec3Array<Real>& x) {
+  return row.responds && gap_of(row, x) < row.thickness * Real(2);
 }
 
-/// Lists the rows of objects that come, as far as they touch, and their particles.
+/// Whether a layer between two objects has no room.
+/// @param lack  what it lacks of its thickness on both sides [m]
+template <class Real>
+bool is_pinched(Real lack, Real thickness) {
+  return lack > -(thickness * Real(kSqueezed) + Real(kTouchSlack));
+}
+
+/// Lists the rows of objects that come, as far as they are near, and their particles.
 template <class Real>
 void list_fronts(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
                  const ColliderStates& colliders, Pinches& pinches) {
@@ -43,7 +52,7 @@ void list_fronts(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
   for (const MovingRow<Real>& moving : rows.moving) {
     if (!may_pinch(colliders[moving.collider])) continue;
     const ContactRow<Real>& row = rows.all[moving.row];
-    if (!is_touching(row, x)) continue;
+    if (!is_near(row, x)) continue;
     pinches.fronts.push_back({moving.row, moving.collider, moving.collider});
     for (std::size_t k = 0; k < row.count; ++k) {
       Index& first = pinches.first_touch[at_index(row.particle[k])];
@@ -54,7 +63,7 @@ void list_fronts(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
   }
 }
 
-/// Lists what touches the particles of `fronts`.
+/// Lists what is near the particles of `fronts`.
 template <class Real>
 void list_touches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
                   const ColliderStates& colliders, Pinches& pinches) {
@@ -65,7 +74,7 @@ void list_touches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
     };
     if (!is_of_front(0) && !(row.count > 1 && is_of_front(1)) && !(row.count > 2 && is_of_front(2)))
       continue;
-    if (colliders[at_index(row.collider)].is_jaw() || !is_touching(row, x)) continue;
+    if (colliders[at_index(row.collider)].is_jaw() || !is_near(row, x)) continue;
     for (std::size_t k = 0; k < row.count; ++k) {
       if (!is_of_front(k)) continue;
       Index& first = pinches.first_touch[at_index(row.particle[k])];
@@ -106,7 +115,9 @@ bool is_backed(const ObjectRows<Real>& rows, const Vec3Array<Real>& x, PinchRow&
   }
   assert(weights > 0 && "one of three particles carries a third");
   lack = behind / weights + row.thickness - gap_of(row, x);
-  return true;
+  if (is_pinched(lack, row.thickness)) return true;
+  pinches.backs.resize(known);
+  return false;
 }
 
 /// Mean normal of the rows on one side of what object `k` pinches.
@@ -123,32 +134,33 @@ Vec3d mean_normal(std::size_t k, const ObjectRows<Real>& rows, const std::vector
   return sum / count;
 }
 
-/// How flat a collider is where cloth is near: squared length of the mean of all its rows' normals,
-/// 0..1. The few rows that touch would not tell: one alone is always flat.
+/// Adds up where the rows of each object face.
 template <class Real>
-double flatness(std::size_t collider, const ObjectRows<Real>& rows) {
-  Vec3d sum = Vec3d::Zero();
-  int count = 0;
+void sum_facing(const ObjectRows<Real>& rows, std::size_t objects, Pinches& pinches) {
+  pinches.facing.assign(objects, {});
   for (const ContactRow<Real>& row : rows.all) {
-    if (at_index(row.collider) != collider) continue;
-    sum += row.normal.template cast<double>();
-    ++count;
+    Pinches::Facing& facing = pinches.facing[at_index(row.collider)];
+    facing.normals += row.normal.template cast<double>();
+    ++facing.rows;
   }
-  assert(count > 0);
-  return (sum / count).squaredNorm();
 }
 
-/// Direction in which object `k` presses what it pinches: across the flatter of both sides, unit.
-/// Across the other one it would slide off to a side. Of sides alike it is the one that it comes
-/// towards.
+/// How flat an object is where cloth is near: squared length of the mean of all its rows' normals,
+/// 0..1. The few rows that touch would not tell: one alone is always flat.
+double flatness(const Pinches::Facing& facing) {
+  assert(facing.rows > 0);
+  return (facing.normals / facing.rows).squaredNorm();
+}
+
+/// Direction in which object `k` presses what it pinches against `other`: across the flatter of
+/// both sides, unit. Across the other one it would slide off to a side. Of sides alike it is the
+/// one that it comes towards.
 template <class Real>
-Vec3d direction_of(std::size_t k, const Vec3d& wanted, const ObjectRows<Real>& rows,
-                   const Pinches& pinches) {
+Vec3d direction_of(std::size_t k, std::size_t other, const Vec3d& wanted,
+                   const ObjectRows<Real>& rows, const Pinches& pinches) {
   const Vec3d front = mean_normal(k, rows, pinches.fronts).normalized();
   const Vec3d back = -mean_normal(k, rows, pinches.backs).normalized();
-  const auto is_of_k = [k](const PinchRow& row) { return row.object == k; };
-  const auto any = std::find_if(pinches.fronts.begin(), pinches.fronts.end(), is_of_k);
-  const double before = flatness(k, rows), behind = flatness(any->other, rows);
+  const double before = flatness(pinches.facing[k]), behind = flatness(pinches.facing[other]);
   if (std::abs(before - behind) > kAlike) return before < behind ? back : front;
   return wanted.dot(front) < wanted.dot(back) ? back : front;
 }
@@ -171,7 +183,7 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
   ColliderStates& colliders = *motion.colliders;
   // What was pinched earlier in this tick counts as pinched if it lets go for some substeps.
   constexpr double kUnknown = std::numeric_limits<double>::lowest();
-  for (ColliderState& collider : colliders) collider.pinch_lack = kUnknown;
+  for (ColliderState& collider : colliders) collider.pinch.lack = kUnknown;
   for (const Index i : pinches.particles) pinches.first_touch[at_index(i)] = kNone;
   pinches.particles.clear();
   pinches.fronts.clear();
@@ -185,19 +197,22 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
     Real lack = 0;
     if (!is_backed(rows, x, front, pinches, lack)) continue;
     ColliderState& object = colliders[front.object];
-    object.pinch_lack = std::max(object.pinch_lack, static_cast<double>(lack));
+    object.pinch.lack = std::max(object.pinch.lack, static_cast<double>(lack));
+    object.pinch.other = static_cast<Index>(front.other);
     pinches.fronts[backed++] = front;
   }
   pinches.fronts.resize(backed);
   remove_doubles(pinches.backs);
   for (const PinchRow& back : pinches.backs)
     colliders[at_index(rows.all[back.row].collider)].braces = true;
+  if (backed > 0) sum_facing(rows, colliders.size(), pinches);
   for (std::size_t k = 0; k < colliders.size(); ++k) {
-    ColliderState& object = colliders[k];
-    if (object.pinch_lack == kUnknown)
-      object.pinch_lack = 0;
+    const Vec3d& wanted = colliders[k].wanted.linear;
+    Pinch& pinch = colliders[k].pinch;
+    if (pinch.lack == kUnknown)
+      pinch.lack = 0;
     else
-      object.pinch = direction_of(k, object.wanted.linear, rows, pinches);
+      pinch.direction = direction_of(k, at_index(pinch.other), wanted, rows, pinches);
   }
 }
 

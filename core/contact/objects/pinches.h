@@ -25,7 +25,7 @@ struct Pinches {
   std::vector<PinchRow> fronts;  ///< rows of objects that come
   std::vector<PinchRow> backs;   ///< those of the other objects, on the other side of the cloth
 
-  /// A row that touches a particle.
+  /// A row that is near a particle.
   struct Touch {
     std::size_t row = 0;
     Index next = kNone;  ///< another one of the particle
@@ -33,6 +33,13 @@ struct Pinches {
   std::vector<Touch> touches;      ///< of the particles of `fronts`
   std::vector<Index> first_touch;  ///< of each particle; kNone: it is in no row of `fronts`
   std::vector<Index> particles;    ///< in rows of `fronts`
+
+  /// All rows of an object.
+  struct Facing {
+    Vec3d normals = Vec3d::Zero();  ///< their sum
+    int rows = 0;
+  };
+  std::vector<Facing> facing;  ///< of each object, if one pinches
 };
 
 /// Finds what is pinched, and tells it to the objects: `pinch` and `braces` of ColliderState.

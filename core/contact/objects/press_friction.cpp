@@ -77,13 +77,27 @@ Real weigh(const std::vector<GrippedRow>& gripped, ObjectRows<Real>& rows) {
   return mass;
 }
 
-/// Shares what an object holds with among the listed rows, all of one object.
-/// @param press  unit direction in which that one presses
+/// Forces of an object that presses [N].
+struct Press {
+  double hold = 0;     ///< whose friction holds
+  double squeeze = 0;  ///< its part that the cloth does not resist yet
+};
+
+/// Two objects that press a layer against each other do so with the force of the weaker one.
+Press press_of(const ColliderState& object, const ColliderStates& colliders) {
+  assert(object.pinches());
+  const ColliderState& other = colliders[at_index(object.pinch.other)];
+  if (!is_opposed(object, other)) return {object.hold, object.squeeze};
+  return {std::min(object.hold, other.hold), std::min(object.squeeze, other.squeeze)};
+}
+
+/// Shares what an object presses with among the listed rows, all of one object.
+/// @param direction  unit, in which that one presses
 /// @return the friction that they allow in this step [N s]
 template <class Real>
-Real share(const ColliderState& object, const Vec3d& press, Real dt,
+Real share(const Press& press, const Vec3d& direction, Real dt,
            const std::vector<GrippedRow>& gripped, ObjectSolve<Real>& solve) {
-  assert(object.squeeze >= 0 && object.squeeze <= object.hold);
+  assert(press.squeeze >= 0 && press.squeeze <= press.hold);
   ObjectRows<Real>& rows = solve.rows;
   const Real weights = weigh(gripped, rows);
   const Real share = weights > 0 ? dt / weights : Real(0);
@@ -94,10 +108,10 @@ Real share(const ColliderState& object, const Vec3d& press, Real dt,
     const ContactRow<Real>& row = rows.all[moving.row];
     const Real part = share * moving.grip;  // [s]
     // Rows at the rim lean, and their normals would not cancel those of the other jaw.
-    const Vec3d impulse = press * (object.squeeze * static_cast<double>(part));
+    const Vec3d impulse = direction * (press.squeeze * static_cast<double>(part));
     (*solve.motion.colliders)[moving.collider].squeezed += impulse;
     if (solve.log.wanted()) solve.log.add_squeeze(rows.all, moving.row, impulse);
-    moving.grip = static_cast<Real>(object.hold) * part * moving.mobility * row.friction;
+    moving.grip = static_cast<Real>(press.hold) * part * moving.mobility * row.friction;
     allowed += moving.grip / moving.mobility;
   }
   return allowed;
@@ -121,7 +135,7 @@ void begin_slip(const std::vector<GrippedRow>& gripped, const ObjectShapes<Real>
     moving.rubbed = slip * (part * moving.grip / speed);
     share_out(row, moving.rubbed, solve.state.v);
     solve.response.pushed.push_back(moving.row);
-    take_reaction(moving, point, moving.rubbed, solve.motion);
+    take_reaction(moving, point, row.normal, moving.rubbed, solve.motion);
     if (solve.log.wanted()) solve.log.add(solve.rows.all, moving.row, moving.rubbed);
   }
 }
@@ -135,11 +149,13 @@ void share_press(std::size_t k, const ObjectShapes<Real>& shapes, Real dt,
                  ObjectSolve<Real>& solve) {
   ColliderStates& colliders = *solve.motion.colliders;
   const ColliderState& object = colliders[k];
+  if (!object.pinches()) return;  // it has let go
   std::vector<GrippedRow>&front = solve.response.gripped, &back = solve.response.braced;
   list_pinched(k, solve.pinches.fronts, solve.rows, colliders, front);
   list_pinched(k, solve.pinches.backs, solve.rows, colliders, back);
-  const Real before = share(object, object.press, dt, front, solve);
-  const Real behind = share<Real>(object, -object.press, dt, back, solve);
+  const Press press = press_of(object, colliders);
+  const Real before = share(press, object.press, dt, front, solve);
+  const Real behind = share<Real>(press, -object.press, dt, back, solve);
   if (!(before > 0 && behind > 0)) return;
   const Real both = std::min(before, behind);
   begin_slip(front, shapes, std::min(both / before, Real(1)), solve);
@@ -171,7 +187,7 @@ void share_hold(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real
       continue;
     }
     list_gripped(k, solve.state.x, solve.rows, object, solve.response.gripped);
-    share(object, object.press, dt, solve.response.gripped, solve);
+    share({object.hold, object.squeeze}, object.press, dt, solve.response.gripped, solve);
   }
 }
 

@@ -187,10 +187,10 @@ TEST_CASE(
     for (int k = 0; k < rate; ++k) {
       plan_motion({def}, k * tick, tick, states);
       const bool resisted = k < rate / 2;
-      if (resisted) states[0].impulse = states[0].twist.linear * (8 * tick);
+      if (resisted) states[0].impulse = states[0].pushed = states[0].twist.linear * (8 * tick);
       advance_collider(tick, tick, states[0]);
       finish_motion({def}, tick, states);
-      if ((k + 1) % (rate / 20) == 0) seen.push_back(states[0].pace);
+      if ((k + 1) % (rate / 20) == 0) seen.push_back(states[0].pace.into);
     }
     return seen;
   };
@@ -201,5 +201,28 @@ TEST_CASE(
     CAPTURE(rate);
     const std::vector<double> other = paces(rate);
     for (std::size_t k = 0; k < usual.size(); ++k) CHECK(other[k] == Approx(usual[k]).margin(0.03));
+  }
+}
+
+TEST_CASE("what an object is pushed back by does not slow it along that, and the other way about") {
+  ColliderDef def = ball({});
+  def.max_force = 5;
+  constexpr double kTick = 1.0 / 60;
+  for (const bool pushed : {true, false}) {
+    ColliderStates states = initial_states({def});
+    states[0].move = MoveDef{pose({10, -9, 0}), 1, 1};
+    for (int k = 0; k < 30; ++k) {
+      plan_motion({def}, k * kTick, kTick, states);
+      const Vec3d along(20 * kTick, 0, 0), down(0, -5.1 * kTick, 0);
+      states[0].impulse = pushed ? down : Vec3d(along + down / 100);
+      states[0].pushed = pushed ? down : Vec3d(down / 100);
+      advance_collider(kTick, kTick, states[0]);
+      finish_motion({def}, kTick, states);
+    }
+    plan_motion({def}, 0.5, kTick, states);
+    const Vec3d v = states[0].twist.linear;
+    INFO((pushed ? "pushed back" : "rubbed"));
+    CHECK((pushed ? v[0] : -v[1]) == Approx(std::sqrt(0.5)).epsilon(0.1));
+    CHECK((pushed ? -v[1] : v[0]) <= 0);
   }
 }
