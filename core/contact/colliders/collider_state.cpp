@@ -73,11 +73,10 @@ Pace next_paces(const ColliderState& state, double max_force, double seconds) {
   const double pushed = state.pushed.norm(), most = max_force * seconds;
   if (pushed > 0) next.against = state.pushed / pushed;
   const Vec3d into = part_into(state.wanted.linear, next);
-  if (!into.isZero(0))
-    next.into = next_pace(state, next.into, pushed / most, state.wanted.linear.norm(), next.yielded,
-                          seconds);
-  else
-    next.into = 1;
+  next.into = 1;
+  if (!into.isZero(0) || pushed > most)  // it yields to more than its force wherever it goes
+    next.into = next_pace(state, state.pace.into, pushed / most, state.wanted.linear.norm(),
+                          next.yielded, seconds);
   const Vec3d along = state.wanted.linear - into;
   const double turn = state.wanted.angular.norm();
   const double speed = along.norm() + (turn > 0 ? turn * state.radius : 0);

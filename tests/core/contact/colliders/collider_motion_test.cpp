@@ -213,7 +213,7 @@ TEST_CASE("what an object is pushed back by does not slow it along that, and the
     states[0].move = MoveDef{pose({10, -9, 0}), 1, 1};
     for (int k = 0; k < 30; ++k) {
       plan_motion({def}, k * kTick, kTick, states);
-      const Vec3d along(20 * kTick, 0, 0), down(0, -5.1 * kTick, 0);
+      const Vec3d along(20 * kTick, 0, 0), down(0, -5.5 * kTick, 0);
       states[0].impulse = pushed ? down : Vec3d(along + down / 100);
       states[0].pushed = pushed ? down : Vec3d(down / 100);
       advance_collider(kTick, kTick, states[0]);
@@ -223,6 +223,6 @@ TEST_CASE("what an object is pushed back by does not slow it along that, and the
     const Vec3d v = states[0].twist.linear;
     INFO((pushed ? "pushed back" : "rubbed"));
     CHECK((pushed ? v[0] : -v[1]) == Approx(std::sqrt(0.5)).epsilon(0.1));
-    CHECK((pushed ? -v[1] : v[0]) <= 0);
+    CHECK((pushed ? -v[1] : v[0]) < 0.1);
   }
 }
