@@ -142,6 +142,7 @@ TEST_CASE("an object presses a single layer on another with its force, and does 
     REQUIRE(world.move_collider(1, up));
     test::advance(world, 0.2);
     CHECK(world.reactions()->colliders[1].norm() == 0);
+    CHECK_FALSE(world.colliders()[0].bracing);  // it costs no more than before
     CHECK(world.reactions()->colliders[0][1] == Approx(-weight).epsilon(0.02));
   }
 }

@@ -6,6 +6,7 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "core/contact/colliders/constants.h"
 #include "core/geometry/aabb.h"
@@ -215,7 +216,7 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     state.wanted = state.twist = {};
     state.progress = 0;
     state.forced = state.move ? state.move->force : colliders[k].force;
-    state.bracing = state.braces;
+    state.bracing = std::exchange(state.braces, false);
     const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
     const Vec3d step = wish ? Vec3d(wish->goal.position - state.pose.position) : Vec3d::Zero();
     Vec3d left = state.is_jaw() ? step : step_along_pinch(step, seconds, states, state);
