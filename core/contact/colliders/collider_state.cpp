@@ -133,7 +133,7 @@ Vec3d step_along_pinch(const Vec3d& step, double seconds, const ColliderStates& 
   state.squeeze = presses ? state.max_force - resistance : 0;
   const double back = std::clamp(state.pinch.lack / 2, -most, most);
   const Vec3d left = stands ? Vec3d(step - pinch * (into - advance + std::max(back, -into))) : step;
-  state.forget_pinch();
+  state.pinch = {};
   return left;
 }
 
@@ -216,7 +216,7 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     state.wanted = state.twist = {};
     state.progress = 0;
     state.forced = state.move ? state.move->force : colliders[k].force;
-    state.bracing = std::exchange(state.braces, false);
+    state.bracing = std::exchange(state.pinch.braces, false);
     const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
     const Vec3d step = wish ? Vec3d(wish->goal.position - state.pose.position) : Vec3d::Zero();
     Vec3d left = state.is_jaw() ? step : step_along_pinch(step, seconds, states, state);
@@ -249,7 +249,7 @@ void take_back_motion(ColliderStates& states) {
     state.overload = state.start_overload;
     state.progress = 0;
     state.blocked = false;
-    state.forget_pinch();
+    state.pinch = {};
     clear_impulses(state);
   }
 }

@@ -10,11 +10,12 @@
 
 namespace weft {
 
-/// A single layer of cloth between a collider and another one.
+/// Single layers of cloth between a collider and other ones.
 struct Pinch {
   Vec3d direction = Vec3d::Zero();  ///< unit, towards the other collider; zero: there is none
   double lack = 0;                  ///< most that the layer lacks of its thickness [m]
   Index other = kNone;              ///< the other collider
+  bool braces = false;              ///< another one pinches cloth against it
 };
 
 /// Fractions of a collider's speed that the resistance of the cloth leaves, -1..1; less than 0: it
@@ -51,8 +52,7 @@ struct ColliderState {
 
   // What it pinches, of the last substep.
   Pinch pinch;
-  bool braces = false;   ///< another object pinches cloth against it
-  bool bracing = false;  ///< one does and presses, in the running tick
+  bool bracing = false;  ///< another object did in the last tick
 
   // For the jaw of a gripper, and what presses cloth on another object.
   Vec3d press = Vec3d::Zero();     ///< unit pressing direction; zero: it does not press
@@ -75,10 +75,6 @@ struct ColliderState {
 
   bool is_moving() const { return !twist.is_zero(); }
   bool pinches() const { return pinch.other != kNone; }
-  void forget_pinch() {
-    pinch = {};
-    braces = false;
-  }
   bool is_jaw() const { return mate != kNone; }
   /// Whether it moves, or is meant to.
   bool is_active() const { return !wanted.is_zero() || hold > 0; }

@@ -204,7 +204,7 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
   pinches.fronts.resize(backed);
   remove_doubles(pinches.backs);
   for (const PinchRow& back : pinches.backs)
-    colliders[at_index(rows.all[back.row].collider)].braces = true;
+    colliders[at_index(rows.all[back.row].collider)].pinch.braces = true;
   if (backed > 0) sum_facing(rows, colliders.size(), pinches);
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     const Vec3d& wanted = colliders[k].wanted.linear;

@@ -42,7 +42,7 @@ struct Pinches {
   std::vector<Facing> facing;  ///< of each object, if one pinches
 };
 
-/// Finds what is pinched, and tells it to the objects: `pinch` and `braces` of ColliderState.
+/// Finds what is pinched, and tells it to the objects: `pinch` of ColliderState.
 template <class Real>
 void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
                   ObjectMotion<Real>& motion, Pinches& pinches);
