@@ -165,10 +165,10 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
           {middle.position + offset, middle.rotation}, kMostColliderSpeed, kMostColliderTurnSpeed};
       jaw.pace = {};
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
-      jaw.press = press_of(gripper, k);
-      jaw.hold = gripper.gripping ? gripper.force : 0;
       jaw.layered = gripper.gripping && grips_layers(gripper);
-      jaw.squeeze = jaw.hold - (jaw.layered ? std::min(resistance, jaw.hold) : 0);
+      const double hold = gripper.gripping ? gripper.force : 0;
+      const double squeeze = hold - (jaw.layered ? std::min(resistance, hold) : 0);
+      jaw.press = {press_of(gripper, k), hold, squeeze};
     }
   }
 }

@@ -41,9 +41,10 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
     feed(hash, state.pinch.direction.data(), 3);
     feed(hash, &state.pinch.lack, 1);
     feed(hash, &state.pinch.other, 1);
+    feed(hash, &state.press.other, 1);
     feed(hash, &state.impulse, 1);  // which is left of its force
   }
-  if (state.is_jaw() && state.hold > 0)
+  if (state.is_jaw() && state.press.hold > 0)
     feed(hash, &state.impulse, 1);  // to which the jaw may yield
   if (!state.move) return;
   const auto wanted = numbers_of(state.move->target, state.move->speed, state.move->turn_speed);

@@ -195,6 +195,27 @@ TEST_CASE("of two objects that press a layer between them the weaker one gives w
   }
 }
 
+TEST_CASE("an object between open jaws presses a layer on one of them with its force") {
+  WorldDef def = pressed_sheet({});
+  def.colliders.erase(def.colliders.begin());  // the lower jaw takes the place of the ground
+  GripperDef gripper;
+  gripper.orientation = Eigen::AngleAxisd(1.5707963267948966, Vec3d::UnitZ());
+  gripper.half_extents = Vec3d(0.02, 0.15, 0.15);
+  gripper.opening = 0.3;
+  gripper.centre = Vec3d(0, 0.15, 0);
+  def.grippers = {gripper};
+  World<float> world(def);
+  world.measure_forces(true);
+  MoveDef down;
+  down.target.position = Vec3d::Zero();
+  down.speed = 0.1;
+  REQUIRE(world.move_collider(0, down));
+  test::advance(world, 1);
+  const auto [object, jaw] = mean_forces(world, 10);
+  CHECK(object[1] == Approx(5).epsilon(0.02));
+  CHECK(jaw[1] == Approx(-5 - 0.008 * 9.81).epsilon(0.02));
+}
+
 TEST_CASE("a layer that is pressed is held at 0.9 of what friction on both sides allows") {
   for (const bool finger : {false, true}) {
     for (const double load : {0.9, 1.1}) {

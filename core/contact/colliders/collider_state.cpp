@@ -64,7 +64,7 @@ double next_pace(const ColliderState& state, double pace, double resistance, dou
   }
   const double slowed = pace / (1 + (resistance - 1) * std::min(seconds / kPaceSeconds, 1.0));
   if (slowed >= kLeastColliderPace && !state.blocked) return slowed;
-  if (!state.press.isZero(0)) return 0;
+  if (state.press.acts()) return 0;
   return -std::min(1.0, std::min(resistance - 1, kMostYielding) * kYieldSpeed / speed);
 }
 
@@ -93,14 +93,16 @@ Pace next_paces(const ColliderState& state, double max_force, double seconds) {
 
 /// Of two objects that press a layer against each other the weaker one gives way slowly, and the
 /// stronger one follows.
+/// @param k     number of one of them
 /// @param step  towards its goal, along the pinch [m]
 /// @param most  that either moves [m]
-/// @return how far an object goes along its pinch [m]
-double advance_against(const ColliderState& state, double step, double most,
-                       const ColliderStates& states) {
+/// @return how far it goes along its pinch [m]
+double advance_against(std::size_t k, double step, double most, const ColliderStates& states) {
+  const ColliderState& state = states[k];
   assert(state.pinches() && most >= 0);
   const ColliderState& other = states[at_index(state.pinch.other)];
-  if (other.is_jaw() || !is_opposed(state, other)) return 0;
+  const bool opposed = state.press.other == state.pinch.other;
+  if (!opposed || other.press.other != static_cast<Index>(k)) return 0;
   if (state.max_force < other.max_force) return -most;
   return state.max_force > other.max_force ? std::clamp(step, 0.0, most) : 0;
 }
@@ -109,17 +111,17 @@ double advance_against(const ColliderState& state, double step, double most,
 /// [m]: it goes no farther that way, but to where the layer has its thickness, and presses
 /// with its force as long as its goal lies there. It moves on along the layer. Where layers beside
 /// resist with its force it does not press besides.
+/// @param k        its number
 /// @param seconds  of the last tick, whose impulses the state still has
-Vec3d step_along_pinch(const Vec3d& step, double seconds, const ColliderStates& states,
-                       ColliderState& state) {
+Vec3d step_along_pinch(std::size_t k, const Vec3d& step, double seconds, ColliderStates& states) {
+  ColliderState& state = states[k];
   assert(!state.is_jaw() && seconds > 0);
   const double most = kYieldSpeed * seconds;
   if (!state.pinches()) {
     // What has let go for a moment is met again slowly.
-    const double ahead = state.forced ? 0 : std::max(step.dot(state.press) - most, 0.0);
-    const Vec3d left = step - state.press * ahead;
-    state.press.setZero();
-    state.hold = state.squeeze = 0;
+    const double ahead = state.forced ? 0 : std::max(step.dot(state.press.direction) - most, 0.0);
+    const Vec3d left = step - state.press.direction * ahead;
+    state.press = {};
     return left;
   }
   const Vec3d& pinch = state.pinch.direction;
@@ -127,10 +129,10 @@ Vec3d step_along_pinch(const Vec3d& step, double seconds, const ColliderStates& 
   const double resistance = std::max(0.0, state.impulse.dot(pinch) / seconds);
   const bool stands = into > kPressingDepth && !state.forced;
   const bool presses = stands && resistance < state.max_force;
-  const double advance = presses ? advance_against(state, into, most, states) : 0;
-  state.press = presses ? pinch : Vec3d::Zero();
-  state.hold = presses ? state.max_force : 0;
-  state.squeeze = presses ? state.max_force - resistance : 0;
+  const double advance = presses ? advance_against(k, into, most, states) : 0;
+  state.press = {};
+  if (presses)
+    state.press = {pinch, state.max_force, state.max_force - resistance, state.pinch.other};
   const double back = std::clamp(state.pinch.lack / 2, -most, most);
   const Vec3d left = stands ? Vec3d(step - pinch * (into - advance + std::max(back, -into))) : step;
   state.pinch = {};
@@ -219,9 +221,9 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     state.bracing = std::exchange(state.pinch.braces, false);
     const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
     const Vec3d step = wish ? Vec3d(wish->goal.position - state.pose.position) : Vec3d::Zero();
-    Vec3d left = state.is_jaw() ? step : step_along_pinch(step, seconds, states, state);
+    Vec3d left = state.is_jaw() ? step : step_along_pinch(k, step, seconds, states);
     clear_impulses(state);
-    state.blocked = !state.is_jaw() && !state.press.isZero(0);
+    state.blocked = !state.is_jaw() && state.press.acts();
     if (!wish) continue;
     const Vec3d turn = rotation_vector(wish->goal.rotation * state.pose.rotation.conjugate());
     // Translation and rotation of a command take the same time, so that the path does not depend on

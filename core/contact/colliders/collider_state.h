@@ -18,6 +18,16 @@ struct Pinch {
   bool braces = false;              ///< another one pinches cloth against it
 };
 
+/// How a jaw of a gripper presses cloth in a tick, or an object a single layer on another one.
+struct Press {
+  Vec3d direction = Vec3d::Zero();  ///< unit; zero: it does not press
+  double hold = 0;                  ///< force whose friction holds what it presses [N]
+  double squeeze = 0;               ///< its part that the cloth does not resist yet [N]
+  Index other = kNone;              ///< the object that it presses the layer on; not of jaws
+
+  bool acts() const { return !direction.isZero(0); }
+};
+
 /// Fractions of a collider's speed that the resistance of the cloth leaves, -1..1; less than 0: it
 /// yields. Layers that bear it resist with many times what sliding over them takes, so motion into
 /// what resists and motion along it are slowed apart.
@@ -54,13 +64,10 @@ struct ColliderState {
   Pinch pinch;
   bool bracing = false;  ///< another object did in the last tick
 
-  // For the jaw of a gripper, and what presses cloth on another object.
-  Vec3d press = Vec3d::Zero();     ///< unit pressing direction; zero: it does not press
-  double hold = 0;                 ///< force whose friction holds what it grips in this tick [N]
-  bool layered = false;            ///< what it grips are several layers, which resist it
-  double squeeze = 0;              ///< its part that the cloth does not resist yet [N]
-  Vec3d squeezed = Vec3d::Zero();  ///< its impulse on the cloth so far in the tick [N s]
-  double facing = 0;               ///< thickness of the cloth in front of it; 0: none [m]
+  Press press;
+  Vec3d squeezed = Vec3d::Zero();  ///< impulse of its squeeze so far in the tick [N s]
+  bool layered = false;            ///< a jaw grips several layers, which resist it
+  double facing = 0;               ///< thickness of the cloth in front of a jaw; 0: none [m]
 
   // Its force limit within a substep: beyond it, the collider stands.
   double radius = 0;              ///< of the surface about the pivot [m]
@@ -77,15 +84,10 @@ struct ColliderState {
   bool pinches() const { return pinch.other != kNone; }
   bool is_jaw() const { return mate != kNone; }
   /// Whether it moves, or is meant to.
-  bool is_active() const { return !wanted.is_zero() || hold > 0; }
+  bool is_active() const { return !wanted.is_zero() || press.hold > 0; }
 };
 
 using ColliderStates = std::vector<ColliderState>;
-
-/// Whether two objects press against each other.
-inline bool is_opposed(const ColliderState& a, const ColliderState& b) {
-  return a.press.dot(b.press) < 0;
-}
 
 /// Reference point of a collider's pose and rotation: the centre of a sphere or box, the middle of
 /// a capsule, the point of a plane, the centre of the box around a mesh [m].

@@ -13,7 +13,7 @@ namespace {
 
 /// Whether an object goes on into what it pinches, until the next tick presses instead.
 bool goes_into_pinch(const ColliderState& state) {
-  return state.press.isZero(0) && state.twist.linear.dot(state.pinch.direction) > 0;
+  return !state.press.acts() && state.twist.linear.dot(state.pinch.direction) > 0;
 }
 
 /// Objects that have been resisted by more than their force stand in the coming substep, and both
@@ -56,10 +56,10 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
     rows_go |= tracked && !frame.tracked;  // the old ones do not follow it
     frame.tracked = tracked;
     motion.any_tracked = motion.any_tracked || tracked;
-    motion.any_press = motion.any_press || !state.press.isZero(0);
+    motion.any_press = motion.any_press || state.press.acts();
     state.facing = 0;
     // What slips out of jaws goes round their rims, where planes that stay would stop it for ever.
-    rows_go |= state.hold > 0;
+    rows_go |= state.press.hold > 0;
     const double turn = state.twist.angular.norm();
     const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
     motion.surface_speed = std::max(motion.surface_speed, static_cast<Real>(speed));

@@ -18,16 +18,16 @@ namespace {
 template <class Real>
 void list_gripped(std::size_t k, const Vec3Array<Real>& x, ObjectRows<Real>& rows,
                   ColliderState& jaw, std::vector<GrippedRow>& gripped) {
-  assert(!jaw.press.isZero(0) && jaw.is_jaw());
+  assert(jaw.press.acts() && jaw.is_jaw());
   gripped.clear();
   jaw.facing = 0;
+  const Vec3<Real> press = jaw.press.direction.template cast<Real>();
   const Real slack = Real(jaw.layered ? kSqueezedLayers : kSqueezed);
   for (std::size_t m = 0; m < rows.moving.size(); ++m) {
     MovingRow<Real>& moving = rows.moving[m];
     if (moving.collider != k) continue;
     const ContactRow<Real>& row = rows.all[moving.row];
-    if (!row.responds || !(row.normal.dot(jaw.press.template cast<Real>()) > Real(kFacing)))
-      continue;
+    if (!row.responds || !(row.normal.dot(press) > Real(kFacing))) continue;
     const Real gap = row.normal.dot(weighted(row, x)) - row.offset;
     if (gap < row.thickness * Real(kBeforeJaw))
       jaw.facing = std::max(jaw.facing, static_cast<double>(row.thickness));
@@ -47,7 +47,7 @@ void list_pinched(std::size_t k, const std::vector<PinchRow>& side, const Object
     if (pinch.object != k) continue;
     const ContactRow<Real>& row = rows.all[pinch.row];
     const auto own = at_index(row.collider);
-    if (row.mover == kNone || (own != k && !colliders[own].press.isZero(0))) continue;
+    if (row.mover == kNone || (own != k && colliders[own].press.hold > 0)) continue;
     gripped.push_back({at_index(row.mover), pinch.other});
   }
 }
@@ -77,26 +77,23 @@ Real weigh(const std::vector<GrippedRow>& gripped, ObjectRows<Real>& rows) {
   return mass;
 }
 
-/// Forces of an object that presses [N].
-struct Press {
-  double hold = 0;     ///< whose friction holds
-  double squeeze = 0;  ///< its part that the cloth does not resist yet
-};
-
 /// Two objects that press a layer against each other do so with the force of the weaker one.
-Press press_of(const ColliderState& object, const ColliderStates& colliders) {
-  assert(object.pinches());
-  const ColliderState& other = colliders[at_index(object.pinch.other)];
-  if (!is_opposed(object, other)) return {object.hold, object.squeeze};
-  return {std::min(object.hold, other.hold), std::min(object.squeeze, other.squeeze)};
+/// @param k  number of one of them
+Press press_of(std::size_t k, const ColliderStates& colliders) {
+  Press press = colliders[k].press;
+  assert(colliders[k].pinches());
+  const Press& other = colliders[at_index(colliders[k].pinch.other)].press;
+  if (other.other != static_cast<Index>(k)) return press;
+  press.hold = std::min(press.hold, other.hold);
+  press.squeeze = std::min(press.squeeze, other.squeeze);
+  return press;
 }
 
 /// Shares what an object presses with among the listed rows, all of one object.
-/// @param direction  unit, in which that one presses
 /// @return the friction that they allow in this step [N s]
 template <class Real>
-Real share(const Press& press, const Vec3d& direction, Real dt,
-           const std::vector<GrippedRow>& gripped, ObjectSolve<Real>& solve) {
+Real share(const Press& press, Real dt, const std::vector<GrippedRow>& gripped,
+           ObjectSolve<Real>& solve) {
   assert(press.squeeze >= 0 && press.squeeze <= press.hold);
   ObjectRows<Real>& rows = solve.rows;
   const Real weights = weigh(gripped, rows);
@@ -108,7 +105,7 @@ Real share(const Press& press, const Vec3d& direction, Real dt,
     const ContactRow<Real>& row = rows.all[moving.row];
     const Real part = share * moving.grip;  // [s]
     // Rows at the rim lean, and their normals would not cancel those of the other jaw.
-    const Vec3d impulse = direction * (press.squeeze * static_cast<double>(part));
+    const Vec3d impulse = press.direction * (press.squeeze * static_cast<double>(part));
     (*solve.motion.colliders)[moving.collider].squeezed += impulse;
     if (solve.log.wanted()) solve.log.add_squeeze(rows.all, moving.row, impulse);
     moving.grip = static_cast<Real>(press.hold) * part * moving.mobility * row.friction;
@@ -148,14 +145,14 @@ template <class Real>
 void share_press(std::size_t k, const ObjectShapes<Real>& shapes, Real dt,
                  ObjectSolve<Real>& solve) {
   ColliderStates& colliders = *solve.motion.colliders;
-  const ColliderState& object = colliders[k];
-  if (!object.pinches()) return;  // it has let go
+  if (!colliders[k].pinches()) return;  // it has let go
   std::vector<GrippedRow>&front = solve.response.gripped, &back = solve.response.braced;
   list_pinched(k, solve.pinches.fronts, solve.rows, colliders, front);
   list_pinched(k, solve.pinches.backs, solve.rows, colliders, back);
-  const Press press = press_of(object, colliders);
-  const Real before = share(press, object.press, dt, front, solve);
-  const Real behind = share<Real>(press, -object.press, dt, back, solve);
+  Press press = press_of(k, colliders);
+  const Real before = share(press, dt, front, solve);
+  press.direction = -press.direction;
+  const Real behind = share(press, dt, back, solve);
   if (!(before > 0 && behind > 0)) return;
   const Real both = std::min(before, behind);
   begin_slip(front, shapes, std::min(both / before, Real(1)), solve);
@@ -181,13 +178,13 @@ void share_hold(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real
   }
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     ColliderState& object = colliders[k];
-    if (object.press.isZero(0)) continue;
+    if (!object.press.acts()) continue;
     if (!object.is_jaw()) {
       share_press(k, shapes, dt, solve);
       continue;
     }
     list_gripped(k, solve.state.x, solve.rows, object, solve.response.gripped);
-    share({object.hold, object.squeeze}, object.press, dt, solve.response.gripped, solve);
+    if (object.press.hold > 0) share(object.press, dt, solve.response.gripped, solve);
   }
 }
 

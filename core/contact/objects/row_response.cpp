@@ -160,7 +160,7 @@ std::span<const Index> particles_of(const auto& row) {
 template <class Real>
 void settle_between_jaws(ObjectSolve<Real>& solve) {
   const auto is_of_jaw = [&solve](std::size_t collider) {
-    return !(*solve.motion.colliders)[collider].press.isZero(0);
+    return (*solve.motion.colliders)[collider].press.acts();
   };
   const auto is_jaws_row = [&](const MovingRow<Real>& row) { return is_of_jaw(row.collider); };
   const std::vector<MovingRow<Real>>& moving = solve.rows.moving;
