@@ -42,6 +42,7 @@ void Contact<Real>::reset() {
   rows_.moving.clear();
   rows_.exits.clear();
   log_.clear();
+  response_.lone_given.clear();
   bounces_.v_came.clear();
   bounces_.v_kicked.clear();
   bounces_.impacts.clear();
@@ -64,6 +65,7 @@ template <class Real>
 void Contact<Real>::begin_tick(double tick_seconds, ColliderStates* colliders) {
   resolved_ = false;
   log_.clear();
+  response_.lone_given.clear();
   if (begin_motion(tick_seconds, colliders, shapes_, motion_)) reach_.made = false;
 }
 
@@ -135,6 +137,7 @@ void Contact<Real>::rebuild_rows(const ClothState<Real>& state, Real dt, Profile
   for (ColliderFrame<Real>& frame : shapes_.frames) frame.travel_since_rows = 0;
   motion_.since_rows = motion_.coming;
   take_to_own(shapes_, state.x, near_);
+  note_lone(rows_, response_, log_);
   log_.before_rebuild(rows_.all);
   rows_.all.clear();
   rows_.moving.clear();
@@ -187,7 +190,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
   if (!rows_.all.empty()) {
     ObjectSolve<Real> solve = solving(state);
     profile[Stage::contact].work += rows_.all.size();
-    if (log_.wanted()) log_.see(rows_.all, state);
+    begin_notes(solve);
     find_busy_rows(rows_, reach_.travel2, log_, response_);
     push_out(solve, clearance_.smallest_gap, dt);
     aim_rows(solve, shapes_, dt);
@@ -243,7 +246,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
   }
   ObjectSolve<Real> solve = solving(state);
   profile[Stage::contact].work += rows_.all.size();
-  if (log_.wanted()) log_.see(rows_.all, state);
+  begin_notes(solve);
   measure_travel(state, dt, Real(0), executor_, reach_);
   find_busy_rows(rows_, reach_.travel2, log_, response_);
   respond_alone(solve, dt, false);
@@ -264,6 +267,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
 
 template <class Real>
 std::vector<ContactPoint> Contact<Real>::contacts(const Vec3Array<Real>& x) {
+  note_lone(rows_, response_, log_);
   return log_.contacts(rows_.all, x, kTouching, static_cast<double>(motion_.tick_seconds));
 }
 

@@ -18,6 +18,7 @@ void ContactLog::clear() {
   for (const Slot& slot : slots_) first_slot_[at_index(slot.contact.particle[0])] = kNone;
   slots_.clear();
   sums_.clear();
+  squeezes_.clear();
   entries_.clear();
 }
 

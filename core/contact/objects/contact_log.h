@@ -52,6 +52,7 @@ class ContactLog {
   void see(const auto& rows, const auto& state) {
     if (sums_.size() == rows.size()) return;
     sums_.clear();
+    squeezes_.clear();
     for (const auto& row : rows) {
       sums_.emplace_back();
       sums_.back().mass = mass_of(row, state);
@@ -60,20 +61,22 @@ class ContactLog {
 
   /// Notes that row `r` got an impulse from an object.
   /// @param change  of the velocity of the row's point [m/s]; it is shared by mass
-  void add(const auto& rows, std::size_t r, const auto& change) {
+  [[gnu::always_inline]] void add(const auto& rows, std::size_t r, const auto& change) {
     assert(sums_.size() == rows.size() && "see comes first");
     const Vec3d impulse = change.template cast<double>() * sums_[r].mass;
     sums_[r].impulse += impulse;
-    if (each_wanted_) entries_.push_back({entry_of(rows[r]), impulse});
+    if (each_wanted_) [[unlikely]]
+      enter(rows[r], impulse);
   }
 
   /// Notes its share of what a jaw squeezes with [N s], all of which is pressure: it acts along the
   /// jaw's press, as that of the other jaw does, however the row leans.
   void add_squeeze(const auto& rows, std::size_t r, const Vec3d& impulse) {
     assert(sums_.size() == rows.size() && "see comes first");
-    sums_[r].squeeze += impulse;
+    squeezes_.resize(sums_.size(), Vec3d::Zero());
+    squeezes_[r] += impulse;
     if (!each_wanted_) return;
-    entries_.push_back({entry_of(rows[r]), impulse});
+    enter(rows[r], impulse);
     entries_.back().first.normal = impulse.normalized();
   }
 
@@ -81,20 +84,21 @@ class ContactLog {
   void add_apart(const auto& row, const auto& change, const auto& state) {
     const Vec3d impulse = change.template cast<double>() * mass_of(row, state);
     book(row, impulse, Vec3d::Zero());
-    if (each_wanted_) entries_.push_back({entry_of(row), impulse});
+    if (each_wanted_) enter(row, impulse);
   }
 
   /// Call before the normal of row `r` turns: what it got belongs to the old one.
   void before_turn(const auto& rows, std::size_t r) {
-    if (sums_.size() == rows.size()) book_sum(rows[r], sums_[r]);
+    if (sums_.size() == rows.size()) book_sum(rows, r);
   }
 
   /// Call before rows go.
   void before_rebuild(const auto& rows) {
     if (sums_.size() == rows.size()) {
-      for (std::size_t r = 0; r < rows.size(); ++r) book_sum(rows[r], sums_[r]);
+      for (std::size_t r = 0; r < rows.size(); ++r) book_sum(rows, r);
     }
     sums_.clear();
+    squeezes_.clear();
   }
 
   /// Calls visit(contact, impulse) for each that was noted from `first` on, which then is the next
@@ -111,10 +115,9 @@ class ContactLog {
   std::vector<ContactPoint> contacts(const auto& rows, const auto& x, double reach, double seconds);
 
  private:
-  /// What a row got since it was booked last.
+  /// What a row got from the solver since it was booked last.
   struct RowSum {
-    Vec3d impulse = Vec3d::Zero();  ///< of the solver [N s]
-    Vec3d squeeze = Vec3d::Zero();  ///< of jaws [N s]
+    Vec3d impulse = Vec3d::Zero();  ///< [N s]
     double mass = 0;                ///< impulse for a change of velocity of its point [kg]
   };
   /// A contact with all that it got in this tick. Several triangles of an object may push the same
@@ -156,11 +159,17 @@ class ContactLog {
     }
     return true;
   }
-  void book_sum(const auto& row, RowSum& sum) {
-    if (sum.impulse.isZero(0) && sum.squeeze.isZero(0)) return;
-    book(row, sum.impulse, sum.squeeze);
-    sum.impulse.setZero();
-    sum.squeeze.setZero();
+  void enter(const auto& row, const Vec3d& impulse) {
+    entries_.push_back({entry_of(row), impulse});
+  }
+  void book_sum(const auto& rows, std::size_t r) {
+    Vec3d none = Vec3d::Zero();
+    Vec3d& impulse = sums_[r].impulse;
+    Vec3d& squeeze = squeezes_.empty() ? none : squeezes_[r];
+    if (impulse.isZero(0) && squeeze.isZero(0)) return;
+    book(rows[r], impulse, squeeze);
+    impulse.setZero();
+    squeeze.setZero();
   }
   /// Adds impulses to the slot of a row.
   void book(const auto& row, const Vec3d& impulse, const Vec3d& squeeze) {
@@ -188,9 +197,10 @@ class ContactLog {
   std::vector<ContactPoint> sorted(double seconds);
 
   bool wanted_ = false, each_wanted_ = false;
-  std::vector<RowSum> sums_;                             ///< of each row
-  std::vector<Slot> slots_;                              ///< in the order of their first impulse
-  std::vector<Index> first_slot_;                        ///< for each particle as the first of it
+  std::vector<RowSum> sums_;       ///< of each row
+  std::vector<Vec3d> squeezes_;    ///< of jaws, of each row; empty: none squeezes [N s]
+  std::vector<Slot> slots_;        ///< in the order of their first impulse
+  std::vector<Index> first_slot_;  ///< for each particle as the first of it
   std::vector<std::pair<ContactPoint, Vec3d>> entries_;  ///< all impulses, if they are wanted
 };
 

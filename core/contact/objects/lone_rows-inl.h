@@ -84,9 +84,9 @@ HWY_INLINE hn::Mask<D> aim(D d, LoneBlock<Real>& rows, const LonePass<Real>& pas
 
 /// One response of rows whose velocities are loaded. @return which have responded
 template <class D, class Real = hn::TFromD<D>>
-HWY_INLINE hn::Mask<D> respond(D d, const LoneBlock<Real>& rows, std::size_t k,
-                               const Triple<hn::Vec<D>>& n, Triple<hn::Vec<D>>& v,
-                               LoneResponse<Real>& result) {
+HWY_INLINE hn::Mask<D> respond(D d, const LoneBlock<Real>& rows, const LonePass<Real>& pass,
+                               std::size_t k, std::size_t i, const Triple<hn::Vec<D>>& n,
+                               Triple<hn::Vec<D>>& v, LoneResponse<Real>& result) {
   const auto zero = hn::Zero(d), vn = dot_as_single(n, v);
   const auto push = hn::Sub(hn::LoadU(d, rows.least_speed + k), vn);
   const auto responds = hn::Gt(push, zero);
@@ -96,7 +96,13 @@ HWY_INLINE hn::Mask<D> respond(D d, const LoneBlock<Real>& rows, std::size_t k,
   const auto friction = hn::LoadU(d, rows.friction + k);
   const auto rubs = hn::And(responds, hn::Gt(friction, zero));
   result.friction_evaluations += hn::CountTrue(d, rubs);
+  const auto before = v;
   v = select(responds, v + velocity_change(n, v, vn, push, friction, rubs), v);
+  if (pass.given) {
+    // What velocities have got, rounded as they are, is what others tell.
+    Real* const given = pass.given + 3 * i;
+    store_particles(d, load_particles(d, given) + (v - before), given);
+  }
   return responds;
 }
 
@@ -127,7 +133,7 @@ HWY_ATTR LoneResponse<Real> step(std::span<LoneBlock<Real>> blocks, const LonePa
         const auto n = normals(d, rows, k);
         auto x = load_particles(d, pass.x + 3 * i), v = load_particles(d, pass.v + 3 * i);
         const auto pushed = aim(d, rows, pass, k, acts, n, x);
-        const auto responds = respond(d, rows, k, n, v, result);
+        const auto responds = respond(d, rows, pass, k, i, n, v, result);
         const auto moved = hn::Or(pushed, responds);
         if (hn::AllFalse(d, moved)) return;
         if (!hn::AllFalse(d, pushed)) store_particles(d, x, pass.x + 3 * i);
@@ -143,7 +149,8 @@ HWY_ATTR LoneResponse<Real> sweep(std::span<LoneBlock<Real>> blocks, const LoneP
   for_each_vector(blocks,
                   [&](auto d, LoneBlock<Real>& rows, std::size_t k, std::size_t i) HWY_ATTR {
                     auto v = load_particles(d, pass.v + 3 * i);
-                    const auto responds = respond(d, rows, k, normals(d, rows, k), v, result);
+                    const auto n = normals(d, rows, k);
+                    const auto responds = respond(d, rows, pass, k, i, n, v, result);
                     if (!hn::AllFalse(d, responds)) store_particles(d, v, pass.v + 3 * i);
                   });
   return result;

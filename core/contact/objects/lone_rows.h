@@ -16,7 +16,7 @@
 namespace weft {
 
 /// What a step of the contact solver does to lone rows: where their particles are and what they
-/// respond with. Three numbers a particle in x, v and from, one in reach and travel2.
+/// respond with. Three numbers a particle in x, v, from and given, one in reach and travel2.
 template <class Real>
 struct LonePass {
   Real* x = nullptr;            ///< [m]
@@ -28,6 +28,7 @@ struct LonePass {
   const Real* from = nullptr;   ///< where ways begin [m]
   const Real* reach = nullptr;  ///< how far each particle may go [m]
   Real* travel2 = nullptr;      ///< squared way, now or after the drift, whichever is longer [m^2]
+  Real* given = nullptr;        ///< sum of what responses change velocities by, if told [m/s]
 };
 
 inline constexpr std::size_t kLoneLanes = 8;

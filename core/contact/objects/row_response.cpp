@@ -194,7 +194,8 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
 /// What lone rows work on.
 /// @param pushes  whether they push particles out
 template <class Real>
-LonePass<Real> lone_pass(const ObjectSolve<Real>& solve, Real dt, bool pushes) {
+LonePass<Real> lone_pass(ObjectSolve<Real>& solve, Real dt, bool pushes) {
+  Vec3Array<Real>& given = solve.response.lone_given;
   return {solve.state.x.data()->data(),
           solve.state.v.data()->data(),
           dt,
@@ -203,24 +204,29 @@ LonePass<Real> lone_pass(const ObjectSolve<Real>& solve, Real dt, bool pushes) {
           Real(kPushOutSpeed) * dt,
           solve.reach.x.data()->data(),
           solve.reach.reach.data(),
-          solve.reach.travel2.data()};
-}
-
-/// Lets lone rows do some work(), and notes the impulses that it gives them.
-template <class Real, class Work>
-LoneResponse<Real> note_lone(ObjectSolve<Real>& solve, Work&& work) {
-  if (!solve.log.wanted()) return work();
-  const Vec3Array<Real>&v = solve.state.v, &before = solve.response.v_lone;
-  solve.response.v_lone = v;
-  const LoneResponse<Real> response = work();
-  solve.rows.lone.for_each([&](std::size_t r) {
-    const auto i = at_index(solve.rows.all[r].particle[0]);
-    if (v[i] != before[i]) solve.log.add(solve.rows.all, r, (v[i] - before[i]).eval());
-  });
-  return response;
+          solve.reach.travel2.data(),
+          given.empty() ? nullptr : given.data()->data()};
 }
 
 }  // namespace
+
+template <class Real>
+void begin_notes(ObjectSolve<Real>& solve) {
+  if (!solve.log.wanted()) return;
+  solve.log.see(solve.rows.all, solve.state);
+  solve.response.lone_given.resize(solve.state.v.size(), Vec3<Real>::Zero());
+}
+
+template <class Real>
+void note_lone(const ObjectRows<Real>& rows, RowResponse<Real>& response, ContactLog& log) {
+  if (response.lone_given.empty()) return;
+  rows.lone.for_each([&](std::size_t r) {
+    Vec3<Real>& given = response.lone_given[at_index(rows.all[r].particle[0])];
+    if (given.isZero(0)) return;
+    log.add(rows.all, r, given);
+    given.setZero();
+  });
+}
 
 template <class Real>
 void find_busy_rows(const ObjectRows<Real>& rows, const std::vector<Real>& travel2,
@@ -241,8 +247,7 @@ void find_busy_rows(const ObjectRows<Real>& rows, const std::vector<Real>& trave
 template <class Real>
 void respond_alone(ObjectSolve<Real>& solve, Real dt, bool pushes) {
   if (!solve.response.lone_apart) return;
-  solve.response.lone = note_lone(
-      solve, [&] { return solve.rows.lone.respond(lone_pass(solve, dt, pushes), solve.executor); });
+  solve.response.lone = solve.rows.lone.respond(lone_pass(solve, dt, pushes), solve.executor);
 }
 
 template <class Real>
@@ -288,8 +293,8 @@ Real sweep_rows(ObjectSolve<Real>& solve, bool again) {
   ObjectRows<Real>& rows = solve.rows;
   Real largest = 0;
   if (solve.response.lone_apart && !again) {
-    const LoneResponse<Real> lone = note_lone(
-        solve, [&] { return rows.lone.sweep(lone_pass(solve, Real(0), false), solve.executor); });
+    const LoneResponse<Real> lone =
+        rows.lone.sweep(lone_pass(solve, Real(0), false), solve.executor);
     largest = lone.largest;
     solve.friction_evaluations += lone.friction_evaluations;
   }
@@ -341,6 +346,8 @@ void bounce(ObjectSolve<Real>& solve, ClothGuard<Real>* guard) {
 #define WEFT_INSTANTIATE(Real)                                                    \
   template void find_busy_rows(const ObjectRows<Real>&, const std::vector<Real>&, \
                                const ContactLog&, RowResponse<Real>&);            \
+  template decltype(begin_notes<Real>) begin_notes<Real>;                         \
+  template decltype(note_lone<Real>) note_lone<Real>;                             \
   template decltype(respond_alone<Real>) respond_alone<Real>;                     \
   template void push_out(ObjectSolve<Real>&, Real, Real);                         \
   template decltype(aim_rows<Real>) aim_rows<Real>;                               \

@@ -37,7 +37,7 @@ struct RowResponse {
   std::vector<GrippedRow> gripped;  ///< by which one object holds
   std::vector<GrippedRow> braced;   ///< on the other side of what it presses on another one
   Vec3Array<Real> x_unpushed;       ///< positions before the push-out [m]
-  Vec3Array<Real> v_lone;           ///< velocities before lone rows respond, if told [m/s]
+  Vec3Array<Real> lone_given;       ///< velocity that lone rows gave particles, not noted yet [m/s]
   std::vector<int> changed;         ///< the last sweep between jaws that moved each particle
 };
 
@@ -92,6 +92,14 @@ void for_joint_rows(const ObjectRows<Real>& rows, const RowResponse<Real>& respo
 template <class Real>
 void find_busy_rows(const ObjectRows<Real>& rows, const std::vector<Real>& travel2,
                     const ContactLog& log, RowResponse<Real>& response);
+
+/// Call before rows respond: the impulses that follow are noted, if that is wanted.
+template <class Real>
+void begin_notes(ObjectSolve<Real>& solve);
+
+/// Call before rows go, or the log is read: what lone rows have given is theirs.
+template <class Real>
+void note_lone(const ObjectRows<Real>& rows, RowResponse<Real>& response, ContactLog& log);
 
 /// Lets lone rows respond, if they are processed apart.
 /// @param pushes  whether they push particles out
