@@ -40,6 +40,11 @@ void Hub::send(proto::ViewerId viewer, Message message) {
   if (found != viewers_.end()) found->second.channel->send(std::move(message));
 }
 
+void Hub::send(proto::ViewerId viewer, std::vector<Message> messages) {
+  const auto found = viewers_.find(viewer);
+  if (found != viewers_.end()) found->second.channel->send(std::move(messages));
+}
+
 void Hub::broadcast(const Message& message) {
   for (auto& [id, viewer] : viewers_) {
     if (!viewer.welcomed) continue;

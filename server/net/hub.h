@@ -7,6 +7,7 @@
 #include <memory>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "proto/messages/right.h"
 #include "proto/types.h"
@@ -28,6 +29,7 @@ class Hub {
   void remove(proto::ViewerId viewer);
 
   void send(proto::ViewerId viewer, Message message);
+  void send(proto::ViewerId viewer, std::vector<Message> messages);
   /// To every welcomed viewer.
   void broadcast(const Message& message);
   void welcome_done(proto::ViewerId viewer);

@@ -23,6 +23,9 @@ class NetworkOutput : public RoomOutput {
   void send(proto::ViewerId viewer, Message message) override {
     post([viewer, message = std::move(message)](Hub& hub) { hub.send(viewer, message); });
   }
+  void send(proto::ViewerId viewer, std::vector<Message> messages) override {
+    post([viewer, messages = std::move(messages)](Hub& hub) { hub.send(viewer, messages); });
+  }
   void broadcast(Message message) override {
     post([message = std::move(message)](Hub& hub) { hub.broadcast(message); });
   }

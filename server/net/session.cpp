@@ -60,7 +60,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
 
   void start();
 
-  void write(const Message& message) override;
+  void write(const Message& message, bool more) override;
   void close(std::uint16_t code, const std::string& reason) override;
   void on_welcomed() override {
     pauses_ = false;
@@ -88,6 +88,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void answer(const std::optional<proto::Id>& id, const proto::Reply& reply);
   void note();
   void watch();
+  void hold_back(bool holds);
   void close_by_policy(std::uint16_t code, const std::string& reason);
   void cut_later();
   void finish();
@@ -106,6 +107,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   std::uint32_t number_ = 0;          // of the last text message
   double most_error_ = proto::kUsualPackedError;  // that it allows, if packed [m]
   double alive_ = 0;
+  bool holds_back_ = false;  // the kernel keeps what does not fill a segment
   bool pinging_ = false, finished_ = false, cutting_ = false;
   bool awaits_token_ = false;  // the viewer has not joined
   bool pauses_ = false;        // nothing more is read until the viewer is welcomed
@@ -330,8 +332,9 @@ void Session::note() {
   room_->put({viewer_, number_, Noted{}});
 }
 
-void Session::write(const Message& message) {
+void Session::write(const Message& message, bool more) {
   if (message.topic == Topic::frame) acks_.allow_one();  // one ack per frame
+  if (more) hold_back(true);
   outgoing_ = message;
   ws_.binary(message.binary);
   ws_.async_write(asio::buffer(message.bytes.data(), message.bytes.size()),
@@ -340,10 +343,21 @@ void Session::write(const Message& message) {
                     self->outgoing_ = {};
                     // Reading notices the broken connection too, and finishes.
                     if (!error && self->channel_) self->channel_->on_written();
+                    if (!self->outgoing_.bytes) self->hold_back(false);
                   });
 }
 
+/// Lets the kernel keep the end of what is written until more follows, so that a message and its
+/// answer wake the viewer once.
+void Session::hold_back(bool holds) {
+  if (std::exchange(holds_back_, holds) == holds) return;
+  const int value = holds ? 1 : 0;
+  ::setsockopt(beast::get_lowest_layer(ws_).socket().native_handle(), IPPROTO_TCP, TCP_CORK, &value,
+               sizeof value);
+}
+
 void Session::close(std::uint16_t code, const std::string& reason) {
+  hold_back(false);
   cut_later();
   websocket::close_reason why(static_cast<websocket::close_code>(code));
   why.reason.assign(reason.data(), std::min(reason.size(), why.reason.max_size()));

@@ -35,15 +35,21 @@ ViewerChannel::ViewerChannel(ViewerStream& stream, const Clock& clock, double fr
       most_frames_(proto::kFrameRateRange.maximum) {}
 
 void ViewerChannel::send(Message message) {
+  take(std::move(message));
+  pump();
+}
+
+void ViewerChannel::send(std::vector<Message> messages) {
+  for (Message& message : messages) take(std::move(message));
+  pump();
+}
+
+void ViewerChannel::take(Message message) {
   if (closing_ || closed_) return;
   if (message.topic == Topic::mesh) drop_queued(is_of_mesh);
   if (message.topic == Topic::frame) ++frames_sent_;
   enqueue(std::move(message));
-  if (overflows()) {
-    close(kCloseViewerDoesNotRead, "the queue of messages overflowed");
-    return;
-  }
-  pump();
+  if (overflows()) close(kCloseViewerDoesNotRead, "the queue of messages overflowed");
 }
 
 /// In the place of the one that it replaces: frequent changes must not delay it.
@@ -230,7 +236,7 @@ void ViewerChannel::start(Message message) {
   writing_ = true;
   if (message.topic == Topic::frame && packer_)
     message.bytes = packer_->pack(message.bytes, packed_);
-  stream_.write(message);
+  stream_.write(message, !queue_.empty());
 }
 
 }  // namespace weft::server

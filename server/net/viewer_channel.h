@@ -6,6 +6,7 @@
 #include <deque>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "server/clock.h"
 #include "server/message.h"
@@ -22,7 +23,8 @@ class ViewerStream {
 
   /// Starts a write; the stream calls `ViewerChannel::on_written` when it is done. The channel
   /// starts no second write before that.
-  virtual void write(const Message& message) = 0;
+  /// @param more  another one waits, so that both may go out together
+  virtual void write(const Message& message, bool more) = 0;
 
   /// Starts to close; no write follows.
   virtual void close(std::uint16_t code, const std::string& reason) = 0;
@@ -49,6 +51,8 @@ class ViewerChannel {
   /// Queues a message, in place of a waiting one of its topic. Closes with 4000 if the viewer does
   /// not read and the queue overflows.
   void send(Message message);
+  /// The same for several, which go out together.
+  void send(std::vector<Message> messages);
 
   /// The viewer was sent everything that precedes frames; until then `offer_frame` does nothing.
   void welcome_done();
@@ -109,6 +113,7 @@ class ViewerChannel {
   std::optional<Sending> take_change();
 
  private:
+  void take(Message message);
   void enqueue(Message message);
   template <class Predicate>
   void drop_queued(Predicate&& is_old);

@@ -11,6 +11,7 @@ namespace weft::server {
 /// no viewer can flood the others by changing something.
 struct News {
   bool state = false, roster = false, pins = false, grabs = false;  ///< they have changed
+  bool ticks = false;  ///< an `advance` has changed the state, by ticks alone
   std::vector<proto::Notice> notices;
   bool presence = false;     ///< cursors, cameras and whom viewers follow; told by itself
   double next_presence = 0;  ///< earliest time to tell it [s]

@@ -89,10 +89,10 @@ void Room::take_now(Inbound item) {
   if (const auto* grant = std::get_if<Grant>(&item.what)) return admit(found->second, *grant);
   found->second.applied = item.number;
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
-    const double before = options_.cpu_clock();
+    const bool charges = !is_alone();
+    const double before = charges ? options_.cpu_clock() : 0;
     handle(item.viewer, *request);
-    const double cost = options_.cpu_clock() - before;
-    if (!is_alone()) charge(item.viewer, cost);
+    if (charges) charge(item.viewer, options_.cpu_clock() - before);
     on_finished(item.viewer);
     return;
   }
@@ -218,9 +218,10 @@ void Room::finish_turn() {
   work_off();
   const double now = clock_();
   end_leases();
-  if (ticking() && now >= news_.next_state) {
-    news_.state = news_.state || !world_->report().rested;
-    tell_slow_motion(now);
+  if (now >= news_.next_state) {
+    const bool ticks = ticking() && !world_->report().rested;
+    news_.state = news_.state || ticks || news_.ticks;
+    if (ticking()) tell_slow_motion(now);
   }
   const bool stands =
       !ticking() && !order_.advance && now - time_.last_tick_done() >= kStandingPause;
@@ -241,6 +242,7 @@ double Room::next_wake() const {
   double wake = next_frame();
   if (!stands) wake = std::min(wake, clock_() + kLongestSleep);
   if (news_.any()) wake = std::min(wake, news_.next);
+  if (news_.ticks) wake = std::min(wake, news_.next_state);
   if (news_.presence) wake = std::min(wake, news_.next_presence);
   if (!order_.waiting.empty()) wake = std::min(wake, next_turn());
   for (const auto& [id, viewer] : viewers_)

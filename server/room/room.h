@@ -249,7 +249,7 @@ class Room {
   bool frames_wait(const Viewer& viewer) const;
   bool shows_next_tick() const;
   void show_advanced();
-  void show_observation();
+  Message observation();
   proto::Error stalled_error() const;
   bool advance_wants_forces() const;
   void finish_advance(const std::optional<proto::Error>& error = {});

@@ -1,4 +1,6 @@
 #include <string>
+#include <utility>
+#include <vector>
 
 #include "server/room/room.h"
 #include "server/translate/observation.h"
@@ -71,14 +73,13 @@ void Room::show_advanced() {
                {full ? frame.with_forces : frame.bytes, true, Topic::frame, viewer.ticket});
 }
 
-void Room::show_observation() {
-  const Viewer& viewer = viewers_.at(order_.advance->viewer);
+Message Room::observation() {
   FrameMaker::Facts facts = frame_facts();
   facts.forces = false;  // the observation has its own
   const Observation seen = observation_of(*world_, *order_.advance->wanted.observe);
   const SharedBytes frame = frame_maker_.make_for_one(
       *world_, holds_, facts, [&seen](proto::FrameView& view) { show(seen, view); });
-  output_.send(order_.advance->viewer, {frame, true, Topic::frame, viewer.ticket});
+  return {frame, true, Topic::frame, viewers_.at(order_.advance->viewer).ticket};
 }
 
 /// Ends an `advance` whose viewer takes none of its frames, so that it does not hold up the room.
@@ -92,20 +93,23 @@ proto::Error Room::stalled_error() const {
   return error;
 }
 
-/// What was observed and the answer follow each other at once, so that they seldom wake the network
-/// thread twice.
+/// What was observed and the answer go out together, so that they wake the network thread and the
+/// viewer once.
 void Room::finish_advance(const std::optional<proto::Error>& error) {
-  const proto::AdvanceReply reply{world_->tick(), error ? 0 : world_->hash()};
-  if (!error && order_.advance->wanted.observe) show_observation();
+  std::vector<Message> told;
+  if (!error && order_.advance->wanted.observe) told.push_back(observation());
   const Advance done = *order_.advance;
   order_.advance.reset();
   if (error)
-    output_.send(done.viewer, text_message(proto::encode_error(*error)));
-  else
-    answer(done.viewer, done.id, reply);
+    told.push_back(text_message(proto::encode_error(*error)));
+  else if (done.id)
+    told.push_back(text_message(
+        proto::encode_reply(*done.id, proto::AdvanceReply{world_->tick(), world_->hash()})));
+  output_.send(done.viewer, std::move(told));
   order_.log.shorten_advance(done.left);
   frames_.note_advance();  // ticks of sleeping cloth make no frames, but viewers see where it ends
-  news_.state = true;
+  news_.ticks = true;
+  news_.state = news_.state || error;
 }
 
 }  // namespace weft::server

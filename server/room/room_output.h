@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "proto/messages/right.h"
 #include "proto/types.h"
@@ -15,6 +17,11 @@ class RoomOutput {
 
   /// To one viewer, in order with its other messages; does nothing if the viewer has left.
   virtual void send(proto::ViewerId viewer, Message message) = 0;
+
+  /// The same for several, which go out together.
+  virtual void send(proto::ViewerId viewer, std::vector<Message> messages) {
+    for (Message& message : messages) send(viewer, std::move(message));
+  }
 
   /// Frames a second that the room makes; changed by `load` and `speed`.
   virtual void set_frame_rate(double frame_rate) = 0;

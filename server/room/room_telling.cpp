@@ -92,7 +92,7 @@ void Room::tell_changes() {
     if (news_.state) news_.next_state = now + kStatePause;
     if (news_.pins) tell(told_.pins = pins_message());
     if (news_.grabs) tell(told_.grabs = grabs_message());
-    news_.state = news_.pins = news_.grabs = false;
+    news_.state = news_.ticks = news_.pins = news_.grabs = false;
   }
   news_.next = now + std::max({world_->tick_seconds(), kShortestTelling,
                                static_cast<double>(bytes) / kTellingRate});

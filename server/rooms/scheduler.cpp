@@ -86,13 +86,14 @@ bool Scheduler::is_heavy(const Turns& turns) const {
 
 void Scheduler::work(Lane lane) {
   std::unique_lock lock(mutex_);
+  double cpu = thread_cpu_seconds();
   while (!stopped_) {
     std::shared_ptr<Turns> next = pick(lane, clock_());
     if (!next) {
       wait(lane, lock);
       continue;
     }
-    run(lane, next, lock);
+    run(lane, next, cpu, lock);
     if (!next->removed_) continue;
     lock.unlock();  // this may be the last pointer to it, and a world takes long to destroy
     next.reset();
@@ -185,7 +186,8 @@ double Scheduler::earliest(Lane lane) const {
   return due;
 }
 
-void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
+/// @param spent  CPU time of this thread until the end of the last turn, and of this one [s]
+void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns, double& spent,
                     std::unique_lock<std::mutex>& lock) {
   turns->running_ = true;
   turns->woken_ = false;
@@ -197,13 +199,14 @@ void Scheduler::run(Lane lane, const std::shared_ptr<Turns>& turns,
   if (lane == patient) ++going_;
   look_ahead();
   lock.unlock();
-  const double before = thread_cpu_seconds();
+  const double before = spent;
   Turn turn;
   if (ends)
     turns->end();
   else
     turn = turns->turn();
-  const double cpu = thread_cpu_seconds() - before;
+  spent = thread_cpu_seconds();
+  const double cpu = spent - before;
   if (!ends) turns->note_cpu(cpu);
   lock.lock();
   --running_;

@@ -105,7 +105,8 @@ class Scheduler {
 
   void work(Lane lane);
   void wait(Lane lane, std::unique_lock<std::mutex>& lock);
-  void run(Lane lane, const std::shared_ptr<Turns>& turns, std::unique_lock<std::mutex>& lock);
+  void run(Lane lane, const std::shared_ptr<Turns>& turns, double& spent,
+           std::unique_lock<std::mutex>& lock);
   void book(Turns& turns, const Turn& turn, double cpu);
   void judge();
   static Lane lane_of(const Turns& turns) { return turns.patient_ ? patient : prompt; }

@@ -71,6 +71,22 @@ TEST_CASE("frames of an advance come at most once in a tick's time, and the last
   CHECK(decoded(t.output.frames.back()).header.tick == end);
 }
 
+TEST_CASE(
+    "advances tell the state four times a second, as ticks by the clock do, and the last one") {
+  AdvancingRoom t;
+  const double start = t.clock.now;
+  const std::size_t before = t.output.count("state");
+  std::uint64_t end = 0;
+  for (int k = 0; k < 2000; ++k) end = t.say(1, R"({"op":"advance","id":5,"n":1})")["tick"];
+  const double seconds = t.clock.now - start;
+  REQUIRE(seconds > 2);
+  CHECK(static_cast<double>(t.output.count("state") - before) >= 4 * seconds - 2);
+  CHECK(static_cast<double>(t.output.count("state") - before) <= 4 * seconds + 2);
+  t.clock.now = t.room->next_wake();
+  t.room->finish_turn();
+  CHECK(t.output.last("state")["tick"] == end);
+}
+
 TEST_CASE("an advance with frames all gives its viewer each tick's, once and in order") {
   AdvancingRoom t;
   const std::uint64_t start = t.room->world().tick();

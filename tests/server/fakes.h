@@ -40,10 +40,12 @@ inline std::string text_of(const Message& message) {
 struct FakeStream : ViewerStream {
   std::vector<std::string> written;  ///< messages whose write was started
   int in_flight = 0, most_in_flight = 0;
+  bool more_follows = false;  ///< than the last one
   std::optional<std::uint16_t> closed;
   ViewerChannel* channel = nullptr;
 
-  void write(const Message& message) override {
+  void write(const Message& message, bool more) override {
+    more_follows = more;
     written.push_back(text_of(message));
     most_in_flight = std::max(most_in_flight, ++in_flight);
   }
@@ -89,6 +91,7 @@ struct RecordingOutput : RoomOutput {
   bool viewers_want_frames = true, viewers_want_forces = false;
   std::vector<std::string> frames_with_forces;
 
+  using RoomOutput::send;
   void send(proto::ViewerId viewer, Message message) override {
     if (message.topic == Topic::frame) {
       kept_frames.emplace_back(viewer, text_of(message));

@@ -25,6 +25,17 @@ TEST_CASE("a viewer never has more than one write in flight") {
   CHECK(v.stream.written.size() > 50);
 }
 
+TEST_CASE("what is sent together is written one by one, each but the last with more to follow") {
+  OneViewer v;
+  v.channel.send({text_message("one"), text_message("two"), text_message("three")});
+  for (const bool more : {true, true, false}) {
+    CHECK(v.stream.more_follows == more);
+    v.stream.finish_write();
+  }
+  CHECK(v.stream.written == std::vector<std::string>{"one", "two", "three"});
+  CHECK(v.stream.most_in_flight == 1);
+}
+
 TEST_CASE("a stalled viewer gets the newest frame when it reads again, none of those between") {
   OneViewer v;
   v.channel.offer_frame(fake_frame(1));
