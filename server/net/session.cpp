@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <chrono>
-#include <netinet/tcp.h>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -17,6 +16,7 @@
 #include "server/net/close_codes.h"
 #include "server/net/network_output.h"
 #include "server/net/rate_limit.h"
+#include "server/net/socket_options.h"
 
 namespace weft::server {
 namespace {
@@ -28,11 +28,9 @@ using beast::error_code;
 
 // Text beyond the wire's limit is still read up to here, so that its sender gets the proper error.
 constexpr std::size_t kMostReadBytes = 4 * proto::kMostMessageBytes;
-constexpr int kNotSentLowWater = 16 * 1024;  // unsent bytes that the kernel keeps of one viewer
 constexpr double kAcksPerSecond = 4000;
-constexpr double kFlood = 2;         // this many times the limit of messages ends the connection
-constexpr double kCloseSeconds = 5;  // for the closing handshake
-constexpr double kTokenSeconds = 5;  // for the first message, where a token is needed
+constexpr double kFlood = 2;  // this many times the limit of messages ends the connection
+constexpr double kCloseSeconds = 5, kTokenSeconds = 5;  // to close; for a first message
 // Until a wrong token is refused, so that few can be tried. The connection counts meanwhile.
 constexpr double kWrongTokenSeconds = 0.5;
 
@@ -88,7 +86,6 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void answer(const std::optional<proto::Id>& id, const proto::Reply& reply);
   void note();
   void watch();
-  void hold_back(bool holds);
   void close_by_policy(std::uint16_t code, const std::string& reason);
   void cut_later();
   void finish();
@@ -107,7 +104,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   std::uint32_t number_ = 0;          // of the last text message
   double most_error_ = proto::kUsualPackedError;  // that it allows, if packed [m]
   double alive_ = 0;
-  bool holds_back_ = false;  // the kernel keeps what does not fill a segment
+  LastSegment last_segment_;
   bool pinging_ = false, finished_ = false, cutting_ = false;
   bool awaits_token_ = false;  // the viewer has not joined
   bool pauses_ = false;        // nothing more is read until the viewer is welcomed
@@ -117,9 +114,7 @@ void Session::start() {
   error_code ignored;
   auto& socket = beast::get_lowest_layer(ws_).socket();
   socket.set_option(asio::ip::tcp::no_delay(true), ignored);
-  // A small backlog in the kernel keeps frames fresh.
-  ::setsockopt(socket.native_handle(), IPPROTO_TCP, TCP_NOTSENT_LOWAT, &kNotSentLowWater,
-               sizeof kNotSentLowWater);
+  keep_backlog_small(socket);
   websocket::stream_base::timeout timeout{};
   timeout.handshake_timeout = duration_of(context_.options.limits.handshake_seconds);
   timeout.idle_timeout = websocket::stream_base::none();
@@ -334,7 +329,7 @@ void Session::note() {
 
 void Session::write(const Message& message, bool more) {
   if (message.topic == Topic::frame) acks_.allow_one();  // one ack per frame
-  if (more) hold_back(true);
+  if (more) last_segment_.keep(beast::get_lowest_layer(ws_).socket(), true);
   outgoing_ = message;
   ws_.binary(message.binary);
   ws_.async_write(asio::buffer(message.bytes.data(), message.bytes.size()),
@@ -343,21 +338,12 @@ void Session::write(const Message& message, bool more) {
                     self->outgoing_ = {};
                     // Reading notices the broken connection too, and finishes.
                     if (!error && self->channel_) self->channel_->on_written();
-                    if (!self->outgoing_.bytes) self->hold_back(false);
+                    if (!self->outgoing_.bytes)
+                      self->last_segment_.keep(beast::get_lowest_layer(self->ws_).socket(), false);
                   });
 }
 
-/// Lets the kernel keep the end of what is written until more follows, so that a message and its
-/// answer wake the viewer once.
-void Session::hold_back(bool holds) {
-  if (std::exchange(holds_back_, holds) == holds) return;
-  const int value = holds ? 1 : 0;
-  ::setsockopt(beast::get_lowest_layer(ws_).socket().native_handle(), IPPROTO_TCP, TCP_CORK, &value,
-               sizeof value);
-}
-
 void Session::close(std::uint16_t code, const std::string& reason) {
-  hold_back(false);
   cut_later();
   websocket::close_reason why(static_cast<websocket::close_code>(code));
   why.reason.assign(reason.data(), std::min(reason.size(), why.reason.max_size()));
