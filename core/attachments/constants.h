@@ -93,10 +93,18 @@ inline constexpr double kJawNearOpening = 6;
 /// the cloth. Smaller: they take longer to grip.
 inline constexpr double kJawNearStep = 0.25;
 
-/// By how much jaws that cloth resists with more than their force open in a tick, as a fraction of
-/// the thickness of the thickest cloth [1]. Larger: they let go of layers for moments. Smaller:
-/// they press too hard for longer.
+/// By how much jaws that cloth resists with twice their force open in a tick, as a fraction of the
+/// thickness of the thickest cloth, and in proportion to more and less [1]. Larger: they let go of
+/// layers for moments. Smaller: they press too hard for longer.
 inline constexpr double kJawYield = 0.02;
+
+/// Most times that [1]. Larger: they throw open what was jammed for a moment. Smaller: they crush
+/// what bunches between them.
+inline constexpr double kMostJawYield = 3;
+
+/// Jaws that have yielded come back with this fraction of kJawYield at first, and faster by this
+/// factor with each tick [1]. Larger: they miss their force by more. Smaller: they find it later.
+inline constexpr double kJawTurning = 0.01, kJawGrowth = 1.1;
 
 /// Least force over which an excess counts as a fraction [N]. Larger: jaws of less force yield more
 /// slowly. At 0 those without force would divide by it.
@@ -105,5 +113,13 @@ inline constexpr double kLeastGrip = 0.01;
 /// Jaws touch the cloth between them when their opening exceeds its thickness by no more than this
 /// fraction [1]: rounding. Smaller: jaws that stop exactly at the cloth may count as still open.
 inline constexpr double kJawFacingSlack = 1e-6;
+
+/// How far jaws that stand draw back in a tick to close, in thicknesses of the thickest cloth [1].
+/// Larger: they lose touch of what they were pressed on. Smaller: they take longer to get free.
+inline constexpr double kJawRetreat = 0.02;
+
+/// Jaws that one layer resists with more than their force yield to it until it resists with this
+/// fraction of that [1]. Larger: they change their minds. Smaller: they go on yielding to rims.
+inline constexpr double kJawLeaves = 0.3;
 
 }  // namespace weft

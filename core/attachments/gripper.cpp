@@ -32,10 +32,30 @@ Pose next_pose(const Gripper& gripper, double seconds) {
   return moved(gripper.pose, {offset * fraction, turn * fraction}, 1);
 }
 
-/// Whether the jaws were stopped by more than the layer that both have in front of them. Where that
-/// is all, they stand at its two sides and its impulses cancel.
-bool grips_layers(const Gripper& gripper) {
-  return gripper.gripping && gripper.opening > 2 * gripper.facing * (1 + kJawFacingSlack);
+/// Pose of the middle at the end of the tick. Jaws that cannot close because they stand, as where
+/// they have been sent into cloth on a table, draw back until they can, and stay there until they
+/// are sent elsewhere.
+Pose next_middle(double seconds, double thickest, const ColliderStates& colliders,
+                 Gripper& gripper) {
+  const bool closes = gripper.wanted < gripper.opening && !gripper.gripping;
+  const bool stands = colliders[gripper.jaw[0]].blocked || colliders[gripper.jaw[1]].blocked;
+  gripper.stays = gripper.wanted < gripper.opening && (gripper.stays || (closes && stands));
+  if (!gripper.stays) return next_pose(gripper, seconds);
+  Pose middle = gripper.pose;
+  const Vec3d ahead = gripper.target.position - middle.position;
+  if (closes && stands) middle.position -= ahead.normalized() * (kJawRetreat * thickest);
+  return middle;
+}
+
+/// Whether the jaws were stopped by more than the layer that both have in front of them: by
+/// several, or by one that is bunched or lies across their rims. Where that is all, they stand at
+/// its two sides and its impulses cancel.
+/// @param resistance  of the cloth to both [N]
+/// @param was         whether they were in the last tick
+bool grips_layers(const Gripper& gripper, double resistance, bool was) {
+  if (!gripper.gripping) return false;
+  if (gripper.opening > 2 * gripper.facing * (1 + kJawFacingSlack)) return true;
+  return resistance > gripper.force * (was ? kJawLeaves : 1);
 }
 
 /// Resistance of the cloth to both jaws in the last tick, without what they squeeze with [N].
@@ -46,19 +66,35 @@ double resistance_of(const Gripper& gripper, const ColliderStates& colliders, do
   return std::max(0.0, std::min(of_jaw(0), of_jaw(1)));
 }
 
+/// Opening of jaws at the end of the tick that layers resist [m]. What they resist with changes
+/// within the thickness of one of them, so jaws yield at once, and come back slowly. Jaws that meet
+/// several layers close too far in the tick in which these resist, and layers that were pressed
+/// resist less after a while.
+/// @param resistance  of the cloth to both [N]
+/// @param most        change of the opening [m]
+double opening_on_layers(double resistance, double most, double thickest, Gripper& gripper) {
+  const double excess = (resistance - gripper.force) / std::max(gripper.force, kLeastGrip);
+  if (excess > 0) {
+    gripper.closing = 0;
+    return gripper.opening + std::min(most, std::min(excess, kMostJawYield) * kJawYield * thickest);
+  }
+  gripper.closing = std::min(std::max(gripper.closing * kJawGrowth, kJawTurning), -excess);
+  const double step = std::min(most, gripper.closing * kJawYield * thickest);
+  return std::max(gripper.opening - step, 2 * gripper.facing);
+}
+
 /// Opening of the jaws at the end of the tick [m].
 /// @param resistance  of the cloth to both [N]
-double next_opening(const Gripper& gripper, double resistance, double seconds, double thickest) {
+/// @param layered     more resists than one layer
+double next_opening(double resistance, bool layered, double seconds, double thickest,
+                    Gripper& gripper) {
   assert(gripper.opening >= 0 && gripper.facing >= 0 && resistance >= 0);
   double step = 2 * gripper.def.closing_speed * seconds;
   if (gripper.wanted >= gripper.opening) return std::min(gripper.wanted, gripper.opening + step);
   if (gripper.gripping) {
-    // Jaws that meet several layers close too far in the tick in which these resist, and layers
-    // that were pressed resist less after a while.
-    if (!grips_layers(gripper)) return gripper.opening;
-    const double excess = (resistance - gripper.force) / std::max(gripper.force, kLeastGrip);
-    step = std::min(step, std::min(std::abs(excess), 1.0) * kJawYield * thickest);
-    return std::max(gripper.opening + std::copysign(step, excess), 2 * gripper.facing);
+    if (layered) return opening_on_layers(resistance, step, thickest, gripper);
+    // They were nearer than the layer when they found it, and give it room.
+    return std::max(gripper.opening, std::min(gripper.opening + step, 2 * gripper.facing));
   }
   if (gripper.opening < kJawNearOpening * thickest) step = std::min(step, kJawNearStep * thickest);
   double least = gripper.wanted;
@@ -136,6 +172,7 @@ void command_gripper(const GripperCommand& command, Gripper& gripper) {
   gripper.commanded = true;
   if (command.opening) gripper.wanted = *command.opening;
   if (command.force) gripper.force = *command.force;
+  if (command.position || command.rotation) gripper.stays = false;
   if (command.position) gripper.target.position = *command.position;
   if (command.rotation) gripper.target.rotation = command.rotation->normalized();
   if (command.speed) gripper.speed = *command.speed;
@@ -150,14 +187,17 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
     assert(gripper.jaw[0] < colliders.size() && gripper.jaw[1] < colliders.size());
     for (const GripperStep& step : gripper.def.steps) {
       if (gripper.commanded || step.time > time) break;
-      gripper.target.position = gripper.def.centre + step.offset;
-      gripper.target.rotation = step.rotation.normalized();
+      const Pose target{gripper.def.centre + step.offset, step.rotation.normalized()};
+      gripper.stays = gripper.stays && gripper.target == target;
+      gripper.target = target;
       gripper.wanted = step.opening;
     }
     if (gripper.wanted >= gripper.opening) gripper.gripping = false;
-    const Pose middle = next_pose(gripper, seconds);
+    const Pose middle = next_middle(seconds, thickest, colliders, gripper);
     const double resistance = resistance_of(gripper, colliders, seconds);
-    const double opening = next_opening(gripper, resistance, seconds, thickest);
+    const bool was = colliders[gripper.jaw[0]].layered;
+    const bool layered = grips_layers(gripper, resistance, was);
+    const double opening = next_opening(resistance, layered, seconds, thickest, gripper);
     for (std::size_t k = 0; k < 2; ++k) {
       ColliderState& jaw = colliders[gripper.jaw[k]];
       const Vec3d offset = middle.rotation * offset_of_jaw(gripper.def, k, opening);
@@ -165,7 +205,7 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
           {middle.position + offset, middle.rotation}, kMostColliderSpeed, kMostColliderTurnSpeed};
       jaw.pace = {};
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
-      jaw.layered = gripper.gripping && grips_layers(gripper);
+      jaw.layered = layered;
       const double hold = gripper.gripping ? gripper.force : 0;
       const double squeeze = hold - (jaw.layered ? std::min(resistance, hold) : 0);
       jaw.press = {press_of(gripper, k), hold, squeeze};

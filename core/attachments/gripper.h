@@ -58,8 +58,10 @@ struct Gripper {
   double opening = 0, wanted = 0;  ///< [m]
   double force = 0;                ///< with which each jaw presses, at most [N]
   double facing = 0;               ///< thickness of the cloth in front of both jaws; 0: none [m]
-  bool commanded = false;          ///< follows commands instead of its steps
-  bool gripping = false;           ///< the jaws are stopped by the cloth between them, and press it
+  double closing = 0;      ///< speed with which what has yielded closes again, in kJawYield [1]
+  bool stays = false;      ///< its middle does, so that the jaws can close
+  bool commanded = false;  ///< follows commands instead of its steps
+  bool gripping = false;   ///< the jaws are stopped by the cloth between them, and press it
 };
 
 /// The colliders of a gripper in its initial state.

@@ -46,6 +46,7 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
   }
   if (state.is_jaw() && state.press.hold > 0)
     feed(hash, &state.impulse, 1);  // to which the jaw may yield
+  if (state.layered) feed(hash, &state.press.hold, 1);
   if (!state.move) return;
   const auto wanted = numbers_of(state.move->target, state.move->speed, state.move->turn_speed);
   feed(hash, wanted.data(), wanted.size());
@@ -56,6 +57,8 @@ void feed(XXH64_state_t& hash, const Gripper& gripper) {
   const auto target = numbers_of(gripper.target, gripper.speed, gripper.turn_speed);
   feed(hash, pose.data(), pose.size());
   feed(hash, target.data(), target.size());
+  if (gripper.closing > 0) feed(hash, &gripper.closing, 1);
+  if (gripper.stays) feed(hash, &gripper.speed, 1);
   const std::array<double, 4> rest = {gripper.force, gripper.facing, gripper.commanded ? 1.0 : 0.0,
                                       gripper.gripping ? 1.0 : 0.0};
   feed(hash, rest.data(), rest.size());

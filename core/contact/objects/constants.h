@@ -105,8 +105,8 @@ inline constexpr int kSweeps = 2;
 
 /// Further ones between jaws, at most, and the change of a velocity that they leave [m/s]. More
 /// sweeps, or a smaller change: held cloth creeps less, and costs more.
-inline constexpr int kJawSweeps = 4;
-inline constexpr double kJawResidual = 1e-4;
+inline constexpr int kJawSweeps = 20;
+inline constexpr double kJawResidual = 1e-5;
 
 /// Further ones, each after one over the rows of cloths with each other: one where these press, as
 /// piles would tremble without, and more while each changes more than kResidual. None where the
