@@ -108,6 +108,11 @@ inline constexpr int kSweeps = 2;
 inline constexpr int kJawSweeps = 20;
 inline constexpr double kJawResidual = 1e-5;
 
+/// The same where no jaw holds cloth, but objects press it on others. More: a finger that comes
+/// fast shoves the cloth under it.
+inline constexpr int kPressSweeps = 4;
+inline constexpr double kPressResidual = 1e-4;
+
 /// Further ones, each after one over the rows of cloths with each other: one where these press, as
 /// piles would tremble without, and more while each changes more than kResidual. None where the
 /// first one, begun from the impulses of the last step, found less than this to do [m/s].

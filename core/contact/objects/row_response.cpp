@@ -165,6 +165,12 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
   const auto is_jaws_row = [&](const MovingRow<Real>& row) { return is_of_jaw(row.collider); };
   const std::vector<MovingRow<Real>>& moving = solve.rows.moving;
   if (std::none_of(moving.begin(), moving.end(), is_jaws_row)) return;
+  const bool jaws = std::any_of(moving.begin(), moving.end(), [&solve](const MovingRow<Real>& row) {
+    const ColliderState& collider = (*solve.motion.colliders)[row.collider];
+    return collider.is_jaw() && collider.press.hold > 0;
+  });
+  const int sweeps = jaws ? kJawSweeps : kPressSweeps;
+  const Real residual = Real(jaws ? kJawResidual : kPressResidual);
   std::vector<int>& changed = solve.response.changed;
   changed.assign(solve.state.v.size(), kNone);
   const auto note = [&changed](const ContactRow<Real>& row, int sweep) {
@@ -173,7 +179,7 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
   for (const MovingRow<Real>& row : moving)
     if (is_jaws_row(row)) note(solve.rows.all[row.row], 0);
   bool any = true;
-  for (int sweep = 1; any && sweep <= kJawSweeps; ++sweep) {
+  for (int sweep = 1; any && sweep <= sweeps; ++sweep) {
     stop_point();
     any = false;
     const auto is_new = [&](Index i) { return changed[at_index(i)] + 1 >= sweep; };
@@ -183,8 +189,7 @@ void settle_between_jaws(ObjectSolve<Real>& solve) {
       if (std::none_of(particles.begin(), particles.end(), is_new)) continue;
       const MovingRow<Real>* const held = solve.rows.moving_of(row);
       const bool rubs = !is_of_jaw(at_index(row.collider)) && !(held && held->grip > 0);
-      if (!(solve_row(solve, r, rubs).change.squaredNorm() > Real(kJawResidual * kJawResidual)))
-        continue;
+      if (!(solve_row(solve, r, rubs).change.squaredNorm() > residual * residual)) continue;
       note(row, sweep);
       any = true;
     }
