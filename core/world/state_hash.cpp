@@ -45,8 +45,8 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
     feed(hash, &state.impulse, 1);  // which is left of its force
   }
   if (state.is_jaw() && state.press.hold > 0)
-    feed(hash, &state.impulse, 1);  // to which the jaw may yield
-  if (state.layered) feed(hash, &state.press.hold, 1);
+    feed(hash, &state.impulse, 1);                      // to which the jaw may yield
+  if (state.layered) feed(hash, &state.press.hold, 1);  // to tell it from one that is not
   if (!state.move) return;
   const auto wanted = numbers_of(state.move->target, state.move->speed, state.move->turn_speed);
   feed(hash, wanted.data(), wanted.size());
@@ -58,7 +58,7 @@ void feed(XXH64_state_t& hash, const Gripper& gripper) {
   feed(hash, pose.data(), pose.size());
   feed(hash, target.data(), target.size());
   if (gripper.closing > 0) feed(hash, &gripper.closing, 1);
-  if (gripper.stays) feed(hash, &gripper.speed, 1);
+  if (gripper.stays) feed(hash, &gripper.speed, 1);  // once more, to tell it
   const std::array<double, 4> rest = {gripper.force, gripper.facing, gripper.commanded ? 1.0 : 0.0,
                                       gripper.gripping ? 1.0 : 0.0};
   feed(hash, rest.data(), rest.size());

@@ -23,6 +23,16 @@ void close(World<float>& world, std::size_t gripper = 0) {
   command(world, gripper, closed);
 }
 
+/// Sends the first gripper down to a height [m], for as long, and then closes it.
+void close_at(World<float>& world, double height, double seconds) {
+  GripperCommand down;
+  down.position = Vec3d(0, height, 0);
+  down.speed = 0.1;
+  command(world, 0, down);
+  test::advance(world, seconds);
+  close(world);
+}
+
 /// Mean force with which each jaw presses, of some ticks [N].
 std::array<double, 2> mean_press(World<float>& world, int ticks = 60) {
   std::array<double, 2> mean = {0, 0};
@@ -145,12 +155,7 @@ TEST_CASE("jaws that were sent into a sheet on a table close all the same, and l
                                           std::pair(0.018, 2e-3), std::pair(0.018, 5e-4)}) {
     World<float> world(sheet_on_table(thickness, 0.4, 1));
     world.measure_forces(true);
-    GripperCommand down;
-    down.position = Vec3d(0, height, 0);
-    down.speed = 0.1;
-    command(world, 0, down);
-    test::advance(world, 1.5);
-    close(world);
+    close_at(world, height, 1.5);
     test::advance(world, 3);
     INFO("sent to " << height << " m, " << thickness << " m thick");
     CHECK(world.grippers()[0].opening < 6 * thickness);
@@ -167,12 +172,7 @@ TEST_CASE("jaws that bunch cloth yield to it") {
   World<float> world(sheet_on_table(1e-3, 0.6, 3));
   world.measure_forces(true);
   test::advance(world, 0.25);
-  GripperCommand down;
-  down.position = Vec3d(0, 0.021, 0);
-  down.speed = 0.1;
-  command(world, 0, down);
-  test::advance(world, 1);
-  close(world);
+  close_at(world, 0.021, 1);
   test::advance(world, 1);
   double mean = 0;
   for (const double press : mean_press(world, 240)) mean += press / 2;

@@ -78,12 +78,12 @@ WorldDef pressed_sheet(const Pressed& c) {
 }
 
 /// Sends the object down through the ground, which takes less than a second.
-void press(World<float>& world, double speed = 0.1) {
+void press(World<float>& world, double speed = 0.1, std::size_t object = 1) {
   world.measure_forces(true);
   MoveDef down;
   down.target.position = Vec3d(0.003, 0, 0.002);
   down.speed = speed;
-  REQUIRE(world.move_collider(1, down));
+  REQUIRE(world.move_collider(object, down));
   test::advance(world, 1);
 }
 
@@ -205,12 +205,7 @@ TEST_CASE("an object between open jaws presses a layer on one of them with its f
   gripper.centre = Vec3d(0, 0.15, 0);
   def.grippers = {gripper};
   World<float> world(def);
-  world.measure_forces(true);
-  MoveDef down;
-  down.target.position = Vec3d::Zero();
-  down.speed = 0.1;
-  REQUIRE(world.move_collider(0, down));
-  test::advance(world, 1);
+  press(world, 0.1, 0);
   const auto [object, jaw] = mean_forces(world, 10);
   CHECK(object[1] == Approx(5).epsilon(0.02));
   CHECK(jaw[1] == Approx(-5 - 0.008 * 9.81).epsilon(0.02));
