@@ -211,7 +211,9 @@ void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
 template <class Real>
 void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
   if (rows_.all.empty()) return;
-  const Real enough = cloths_.thickest * Real(kResidual) / dt;
+  // Tangles come apart more easily while layers give way a little.
+  const double residual = open_pairs() > 0 ? kResidual : kAloneResidual;
+  const Real enough = cloths_.thickest * Real(residual) / dt;
   for (int k = 0; k < kMostSweeps; ++k) {
     if (!(sweep(state) > enough)) break;
   }

@@ -155,6 +155,19 @@ inline constexpr double kEdgeRadius = 0.85;
 /// [1]. Larger: contact resists the fabric's own stretch. Smaller: tight folds close.
 inline constexpr double kFabricPart = 0.8;
 
+/// A neighbour comes nearer to what a feature meets if the cosine between the way to it and the way
+/// there is above this [1]. Larger: what slides over cells ahead of it is braked. Smaller: rounding
+/// decides which of equally near features respond.
+inline constexpr double kLeadsNearer = 0.02;
+
+/// The same where the two push each other already: dropped at once, what the particle carries would
+/// sink until edges carry it, rise again, and never rest [1].
+inline constexpr double kStillNearest = 0.3;
+
+/// Edges are nearly parallel if the sine between them is below this [1]. Larger: what meets fast,
+/// edge on edge, is stopped by its certificate. Smaller: cloth that slides along itself is braked.
+inline constexpr double kParallel = 0.2;
+
 /// A particle that passes over the border of a triangle keeps its impulses if the cosine between
 /// both directions is above this [1]. Larger: they are lost on curved cloth. Smaller: they push
 /// elsewhere.
@@ -166,10 +179,12 @@ inline constexpr double kSameWay = 0.99;
 /// that time [1]. Larger: more rows are swept. Smaller: a contact may begin a few steps late.
 inline constexpr double kBusyApproach = 2;
 
-/// Sweeps where cloths meet only each other, at most: see kResidual. What one sweep leaves under
-/// load sinks in, and the push that leads it out again does work that came from nowhere. More:
-/// slower steps under load.
-inline constexpr int kMostSweeps = 3;
+/// Sweeps where cloths meet only each other, at most, and the part of the thickness that the next
+/// substep may then still take from a gap [1]. What sweeps leave under load sinks in, and the push
+/// that leads it out again does work that came from nowhere; and layers that hop so let what lies
+/// on them slide, a dense one on a light one most. More, or smaller: slower steps under load.
+inline constexpr int kMostSweeps = 5;
+inline constexpr double kAloneResidual = 1e-4;
 
 /// Space is cut anew into slabs after this many steps, before a look. Larger: slabs that no longer
 /// have equally many particles. Smaller: more sorting.

@@ -53,6 +53,56 @@ bool may_be_near(const GuardedCloths<Real>& cloths, Index i, Index j, Real thick
   return dot(apart, apart) <= near * near;
 }
 
+/// Whether the nearest point of a triangle is the nearest of the surface around it.
+/// @param particles  the one that is near, and the triangle's corners
+template <class Real>
+bool triangle_owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x,
+                           Index triangle, const std::array<Index, 4>& particles,
+                           const PairSeparation<Real>& s) {
+  assert(at_index(triangle) < cloths.across.size());
+  Quad<Real> nearest;
+  std::size_t corner = 3, zeros = 0, kept = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    nearest += x[at_index(particles[k + 1])] * -s.weight[k + 1];
+    if (s.weight[k + 1] == 0) {
+      corner = k;
+      ++zeros;
+    } else {
+      kept = k;
+    }
+  }
+  const Quad<Real> away = x[at_index(particles[0])] - nearest;
+  const auto leads_nearer = [&](Index i) {
+    return i != particles[0] && dot(away, x[at_index(i)] - nearest) > 0;
+  };
+  if (zeros == 1) {
+    const Index other = cloths.across[at_index(triangle)][corner];
+    return other == kNone || !leads_nearer(other);
+  }
+  if (zeros != 2) return true;
+  const auto around = cloths.neighbours.of(at_index(particles[kept + 1]));
+  return std::none_of(around.begin(), around.end(),
+                      [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
+}
+
+/// Whether the particle of a pair is the nearest point of the surface around it.
+/// @param most  cosine between the ways to a neighbour and to the triangle that does not count [1]
+template <class Real>
+bool particle_owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x,
+                           const std::array<Index, 4>& particles, const PairSeparation<Real>& s,
+                           Real most) {
+  const Quad<Real> towards = to_quad<Real>(-s.normal);
+  const auto leads_nearer = [&](const auto& neighbour) {
+    const Index i = neighbour.particle;
+    if (std::find(particles.begin(), particles.end(), i) != particles.end()) return false;
+    const Quad<Real> way = x[at_index(i)] - x[at_index(particles[0])];
+    const Real nearer = dot(towards, way);
+    return nearer > 0 && nearer * nearer > dot(way, way) * most * most;
+  };
+  const auto around = cloths.neighbours.of(at_index(particles[0]));
+  return std::none_of(around.begin(), around.end(), leads_nearer);
+}
+
 }  // namespace
 
 template <class Real>
@@ -111,34 +161,14 @@ Real seen_from(const GuardedCloths<Real>& cloths, const std::array<Index, 4>& pa
 }
 
 template <class Real>
-bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, Index triangle,
-                  const std::array<Index, 4>& particles, const PairSeparation<Real>& s) {
-  assert(at_index(triangle) < cloths.across.size());
-  Quad<Real> nearest;
-  std::size_t corner = 3, zeros = 0, kept = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    nearest += x[at_index(particles[k + 1])] * -s.weight[k + 1];
-    if (s.weight[k + 1] == 0) {
-      corner = k;
-      ++zeros;
-    } else {
-      kept = k;
-    }
-  }
-  const Quad<Real> away = x[at_index(particles[0])] - nearest;
-  const auto leads_nearer = [&](Index i) {
-    return i != particles[0] && dot(away, x[at_index(i)] - nearest) > 0;
-  };
-  if (zeros == 1) {
-    const Index other = cloths.across[at_index(triangle)][corner];
-    return other == kNone || !leads_nearer(other);
-  }
-  if (zeros != 2) return true;
-  const auto around = cloths.neighbours.of(at_index(particles[kept + 1]));
-  return std::none_of(around.begin(), around.end(),
-                      [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
+bool own_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, Index triangle,
+                 const std::array<Index, 4>& particles, const PairSeparation<Real>& s,
+                 bool pushes) {
+  const Real most = static_cast<Real>(pushes ? kStillNearest : kLeadsNearer);
+  return s.inside || (triangle_owns_nearest(cloths, x, triangle, particles, s) &&
+                      particle_owns_nearest(cloths, x, particles, s, most));
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(guarded_cloths, cloth_of, seen_from, kept_distance, owns_nearest)
+WEFT_INSTANTIATE_FUNCTIONS(guarded_cloths, cloth_of, seen_from, kept_distance, own_nearest)
 
 }  // namespace weft

@@ -53,12 +53,14 @@ template <class Real>
 Real kept_distance(const GuardedCloths<Real>& cloths, const GuardedPair<Real>& pair, Index p,
                    Index q);
 
-/// Whether the nearest point of a triangle is the nearest of the surface around it. At a border
-/// beyond which another triangle comes nearer to the particle, that one has to respond.
+/// Whether the nearest points of a particle and a triangle are the nearest of the surfaces around
+/// them. Where a neighbour of either comes nearer, that one has to respond: a plane between
+/// features that only pass each other is aslant, and would brake what slides and lift it.
 /// @param x          positions [m]
 /// @param particles  the one that is near, and the triangle's corners
+/// @param pushes     the two push each other already
 template <class Real>
-bool owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, Index triangle,
-                  const std::array<Index, 4>& particles, const PairSeparation<Real>& s);
+bool own_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, Index triangle,
+                 const std::array<Index, 4>& particles, const PairSeparation<Real>& s, bool pushes);
 
 }  // namespace weft

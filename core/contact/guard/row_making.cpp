@@ -29,12 +29,51 @@ bool weigh(const std::vector<Real>& inverse_mass, const PairSeparation<Real>& s,
   return mobility > 0;
 }
 
-/// Turns one row. What two edges nearest at an end push is left to the particle there.
+/// Whether a particle next to an edge of a pair comes nearer to the other edge than that does.
+/// @param end      number of the edge's first end in the pair
+/// @param towards  the other edge, unit
+/// @param most     cosine between both ways that does not count [1]
+template <class Real>
+bool has_nearer(const RowSource<Real>& source, const std::array<Index, 4>& particles,
+                std::size_t end, const Quad<Real>& towards, Real most) {
+  const auto leads_nearer = [&](Index from, Index to) {
+    if (std::find(particles.begin(), particles.end(), to) != particles.end()) return false;
+    const Quad<Real> way = source.x[at_index(to)] - source.x[at_index(from)];
+    const Real nearer = dot(towards, way);
+    return nearer > 0 && nearer * nearer > dot(way, way) * most * most;
+  };
+  for (const Index from : {particles[end], particles[end + 1]}) {
+    for (const auto& neighbour : source.cloths.neighbours.of(at_index(from)))
+      if (leads_nearer(from, neighbour.particle)) return true;
+  }
+  return false;
+}
+
+/// Whether two edges carry each other: they are nearest between their ends and, if they are nearly
+/// parallel, nearer than the surfaces beside them. Such edges that pass each other are nearest
+/// aslant, where edges that cross are so across both.
+/// @param pushes  they push each other already
+template <class Real>
+bool edges_carry(const RowSource<Real>& source, const std::array<Index, 4>& particles,
+                 const PairSeparation<Real>& s, bool pushes) {
+  if (!s.inside) return false;
+  const auto& x = source.x;
+  const Quad<Real> a = x[at_index(particles[1])] - x[at_index(particles[0])],
+                   b = x[at_index(particles[3])] - x[at_index(particles[2])];
+  const Real ab = dot(a, b), both2 = dot(a, a) * dot(b, b);
+  if (ab * ab < both2 * (1 - Real(kParallel * kParallel))) return true;
+  const Real most = static_cast<Real>(pushes ? kStillNearest : kLeadsNearer);
+  const Quad<Real> normal = to_quad(s.normal);
+  return !has_nearer(source, particles, 0, normal * Real(-1), most) &&
+         !has_nearer(source, particles, 2, normal, most);
+}
+
+/// Turns one row. What edges push that do not carry each other is left to what is nearer.
 template <class Real>
 void turn(const RowSource<Real>& source, const PairSeparation<Real>& s, GuardRow<Real>& row) {
   if (!(s.gap > 0)) return;
   const Quad<Real> slipped = row.slip + (weighted(row, source.x) - row.apart);
-  if ((kind_of(row) == PairKind::edge_edge && !s.inside) ||
+  if ((kind_of(row) == PairKind::edge_edge && !edges_carry(source, row.particle, s, true)) ||
       !weigh(source.state.inverse_mass, s, row)) {
     row.push = 0;
     row.slip = {};
@@ -62,7 +101,7 @@ void turn_list(const RowSource<Real>& source, const std::vector<Index>& list, Ro
       if (columns.kind == PairKind::edge_edge || s.inside) continue;
       // A particle that has passed over a border is carried by the triangle beyond, and by none
       // that tilts.
-      if (!owns_nearest(source.cloths, source.x, triangle_of(row), row.particle, s))
+      if (!own_nearest(source.cloths, source.x, triangle_of(row), row.particle, s, true))
         part.passed.push_back(row.particle[0]);
     }
   }
@@ -110,14 +149,26 @@ bool is_beyond(const GuardedPair<Real>& pair, const std::vector<Real>& off_ancho
   return pair.bound - first - second > most;
 }
 
+/// Whether a pair had a row that pushed, and was dropped to be made anew.
+template <class Real>
+bool has_pushed(const RowMaking<Real>& making, std::uint64_t key) {
+  const auto& keys = making.old_keys;
+  const auto found =
+      std::lower_bound(keys.begin(), keys.end(), std::pair<std::uint64_t, Index>{key, 0});
+  return found != keys.end() && found->first == key &&
+         making.old_rows[at_index(found->second)].push > 0;
+}
+
 /// Makes a row. @return whether the pair is near enough for one, and no other pair's to respond
 template <class Real>
-bool make_row(const RowSource<Real>& source, const GuardedPair<Real>& pair,
-              const PairSeparation<Real>& s, GuardRow<Real>& row) {
+bool make_row(const RowSource<Real>& source, const RowMaking<Real>& making,
+              const GuardedPair<Real>& pair, const PairSeparation<Real>& s, GuardRow<Real>& row) {
   const GuardedCloths<Real>& cloths = source.cloths;
   if (s.gap > cloths.thickest * Real(kRowReach) || !(s.gap > 0)) return false;
-  if (!s.inside && (pair.kind == PairKind::edge_edge ||
-                    !owns_nearest(cloths, source.x, pair.b, pair.particle, s)))
+  const bool edges = pair.kind == PairKind::edge_edge;
+  const bool pushes = (edges || !s.inside) && has_pushed(making, key_of(pair));
+  if (edges ? !edges_carry(source, pair.particle, s, pushes)
+            : !own_nearest(cloths, source.x, pair.b, pair.particle, s, pushes))
     return false;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
@@ -138,14 +189,14 @@ bool make_row(const RowSource<Real>& source, const GuardedPair<Real>& pair,
 
 /// Makes the rows of the pairs in the columns.
 template <class Real>
-void make_near_rows(const RowSource<Real>& source, const GuardedPairs<Real>& pairs,
-                    RowPart<Real>& part) {
+void make_near_rows(const RowSource<Real>& source, const RowMaking<Real>& making,
+                    const GuardedPairs<Real>& pairs, RowPart<Real>& part) {
   for (PairColumns<Real>& columns : part.columns) {
     separate_pairs(source.x, source.x, columns);
     for (std::size_t k = 0; k < columns.size(); ++k) {
       if (columns.gap[k] > source.cloths.thickest * Real(kRowReach)) continue;
       GuardRow<Real> row;
-      if (make_row(source, pairs[columns.a[k]], columns.separation(k, source.x), row))
+      if (make_row(source, making, pairs[columns.a[k]], columns.separation(k, source.x), row))
         part.rows[static_cast<std::size_t>(columns.kind)].push_back(row);
     }
   }
@@ -278,7 +329,7 @@ void renew_rows(const RowSource<Real>& source, const QuadArray<Real>& anchor,
       if (is_beyond(pair, making.off_anchor, most)) continue;
       making.parts[n].columns[pair.kind].add(number, 0, pair.particle);
     }
-    make_near_rows(source, pairs, making.parts[n]);
+    make_near_rows(source, making, pairs, making.parts[n]);
   });
   for (const Index k : making.moved) {
     const auto i = at_index(k);
@@ -299,7 +350,8 @@ void add_arrived(const RowSource<Real>& source, GuardedPairs<Real>& pairs, RowMa
   for (const GuardedPair<Real>& pair : pairs.arrived) {
     GuardRow<Real> row;
     if (has_row(rows, pair)) continue;
-    if (!make_row(source, pair, separate_pair(pair.kind, points_of(pair, source.x)), row)) continue;
+    if (!make_row(source, making, pair, separate_pair(pair.kind, points_of(pair, source.x)), row))
+      continue;
     const auto number = static_cast<Index>(rows.all.size());
     const std::size_t list = rows.slabs.add(number, pair.particle);
     remember(source.x, making, row);

@@ -46,7 +46,7 @@ TEST_CASE("each command that acts on a cloth wakes it, and a refused one does no
   CHECK(wakes([&] { pin = world.pin({Index(140), 0.0, {}}); }));
   CHECK(wakes([&] {
     PinMove move;
-    move.target = Vec3d(0.05, 0.9, 0.1);
+    move.target = Vec3d(0.1, 0.9, 0.1);
     world.move_pin(pin, move);
   }));
   CHECK(wakes([&] { world.unpin(pin); }));
