@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cassert>
+#include <limits>
 
 #include "core/attachments/pin_drive.h"
 #include "core/cloth/cloth_state.h"
@@ -54,20 +55,28 @@ struct Collision {
       guard->respond_alone(state, dt);
     if (seed) seed->separate(state, profile);
     const double truncated = guard ? guard->counts().truncated : 0;
-    if (guard) guard->certify(state, dt, profile);
+    if (guard)
+      guard->certify(
+          state, dt, [this, &state] { return room(state); }, profile);
     if (objects &&
         !objects->move_objects(state, dt, guard && guard->counts().truncated > truncated)) {
       assert(guard && "objects stop only where the guard truncates");
       guard->stand_still();
     }
   }
+  /// How far any particle may go, whichever way, before it may meet an object [m].
+  Real room(const ClothState<Real>& state) const {
+    return objects ? objects->calm_room(state) : std::numeric_limits<Real>::infinity();
+  }
   /// Call after the drift: corrects penetrations.
   /// @param keeps_velocity  see ClothGuard::finish
-  void after_drift(ClothState<Real>& state, Real dt, Profile& profile,
+  /// @return whether that may have changed a velocity, or with the seed's contact a position
+  bool after_drift(ClothState<Real>& state, Real dt, Profile& profile,
                    bool keeps_velocity = true) const {
     const StageTimer timer(profile, Stage::contact, 0);
-    if (guard) guard->finish(state, keeps_velocity);
+    const bool changed = guard && guard->finish(state, keeps_velocity);
     if (seed) seed->collide(state, dt, profile);
+    return changed || seed;
   }
   /// Call at the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {

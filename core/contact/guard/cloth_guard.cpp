@@ -221,13 +221,16 @@ void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
 }
 
 template <class Real>
-void ClothGuard<Real>::finish(ClothState<Real>& state, bool keeps_velocity) {
+bool ClothGuard<Real>::finish(ClothState<Real>& state, bool keeps_velocity) {
   assert(phase_ == GuardPhase::certified);
+  const bool changes = !stopped_.list.empty() || !push_.particles.empty();
   phase_ = GuardPhase::between_steps;
   if (!keeps_velocity) forget_stopped(stopped_);
   give_velocities_back(stopped_, state.v);
   take_back_push(push_, state.v);
   meet_at_planes(state.inverse_mass, stopped_, state.v);
+  if (step_.is_free) keep_mean_velocity(step_.mean_velocity, state);
+  return changes;
 }
 
 template <class Real>
@@ -299,11 +302,14 @@ void ClothGuard<Real>::collect_strays(Real dt, Profile& profile) {
 // ---- certify ----
 
 template <class Real>
-void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profile) {
+void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, const std::function<Real()>& room,
+                               Profile& profile) {
   assert(phase_ == GuardPhase::solved && dt > 0);
   phase_ = GuardPhase::certified;
   const StageTimer timer(profile, Stage::regions, 0);
   ++step_.number;
+  step_.is_free = false;
+  step_.common = {};
   paths_.elapsed += dt;
   if (calm_.calm) {
     if (stays_calm(calm_.paths, paths_, state, dt, executor_)) {
@@ -318,7 +324,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
     step_.allowed = 0;
     return;
   }
-  keep_in_regions(state, dt, profile);
+  keep_in_regions(state, dt, room, profile);
   note_ends(state, dt, paths_.elapsed, executor_, slack_);
   if (pairs_.active.empty()) note_calm_paths(paths_, executor_, calm_);
   step_.count_motion(pairs_.active, counts_);
@@ -327,7 +333,8 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, Profile& profil
 /// Collects the pairs that the step needs, anchors particles that would leave their regions, and
 /// truncates what no region allows; again for particles that were stopped off their paths.
 template <class Real>
-void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile& profile) {
+void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt,
+                                       const std::function<Real()>& room, Profile& profile) {
   regions_.anchored.clear();
   slack_.left = find_strays(state, dt, cloths_.reach, awake_, executor_, step_, paths_);
   bool collected = paths_.hold();
@@ -343,6 +350,7 @@ void ClothGuard<Real>::keep_in_regions(ClothState<Real>& state, Real dt, Profile
     collected = true;
     slack_.left = std::min(slack_.left, find_loose(pairs_.active, step_, regions_));
     if (regions_.loose.empty()) return;
+    if (attempt == 0) find_common(awake_, state.inverse_mass, dt, room, step_);
     for (const Index i : regions_.anchored) regions_.anchored_at[at_index(i)] = 0;
     regions_.anchored.clear();
     const std::uint64_t before = counts_.anchored;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
@@ -83,8 +84,12 @@ class ClothGuard {
   void respond_alone(ClothState<Real>& state, Real dt);
 
   /// After all other contact and right before the drift of `dt` [s]: lets no particle leave its
-  /// region. One that has to stop earlier does so on the straight line of its motion since `solve`.
-  void certify(ClothState<Real>& state, Real dt, Profile& profile);
+  /// region. One that has to stop earlier does so on the straight line of its motion since `solve`,
+  /// as seen from what all have in common, if they have room for that.
+  /// @param room  says how far any particle may go, whichever way, before it meets anything but
+  ///              cloth [m]; asked where something is stopped
+  void certify(ClothState<Real>& state, Real dt, const std::function<Real()>& room,
+               Profile& profile);
 
   /// After `certify`: says that all particles stay where they were instead, off the paths that were
   /// expected. All that they wanted in this step is lost.
@@ -92,7 +97,8 @@ class ClothGuard {
 
   /// After the drift: gives what was stopped its velocity back, and takes the push out again.
   /// @param keeps_velocity  false: velocities are displacements, and what was stopped loses them
-  void finish(ClothState<Real>& state, bool keeps_velocity = true);
+  /// @return whether that may have changed a velocity
+  bool finish(ClothState<Real>& state, bool keeps_velocity = true);
 
   /// Paths along which nothing can meet, for steps without the calls above; null if there are none.
   const CalmPaths<Real>* calm_paths() const {
@@ -151,7 +157,8 @@ class ClothGuard {
  private:
   void collect(const ClothState<Real>& state, Real dt, Profile& profile);
   void collect_strays(Real dt, Profile& profile);
-  void keep_in_regions(ClothState<Real>& state, Real dt, Profile& profile);
+  void keep_in_regions(ClothState<Real>& state, Real dt, const std::function<Real()>& room,
+                       Profile& profile);
   void examine_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void start_rows(ClothState<Real>& state, Real dt, Real kicked, Profile& profile);
 

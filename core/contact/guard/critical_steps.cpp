@@ -22,9 +22,8 @@ namespace {
 template <class Real>
 Real needed_gap(const GuardedStep<Real>& step, const Regions<Real>& regions,
                 const std::vector<char>& is_tight, const GuardedPair<Real>& pair) {
-  const auto [first, second] = largest_on_sides(pair, [&](std::size_t i) {
-    return is_tight[i] ? length(step.displacement[i]) : regions.radius(i);
-  });
+  const auto [first, second] = largest_on_sides(
+      pair, [&](std::size_t i) { return is_tight[i] ? step.farthest(i) : regions.radius(i); });
   return first + second + regions.smallest_gap;
 }
 
@@ -36,8 +35,7 @@ void find_tight(const GuardedStep<Real>& step, const Regions<Real>& regions,
   critical.tight.clear();
   for (const Index k : regions.anchored) {
     const auto i = at_index(k);
-    const Quad<Real>& way = step.displacement[i];
-    if (dot(way, way) <= regions.radius(i) * regions.radius(i)) continue;
+    if (step.farthest(i) <= regions.radius(i)) continue;
     critical.is_tight[i] = 1;
     critical.tight.push_back(k);
   }
@@ -99,9 +97,9 @@ bool holds(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
   PairPoints<Real> end;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = at_index(pair.particle[k]);
-    const Quad<Real> allowed = step.displacement[i] * fraction[i];
+    const Quad<Real> allowed = step.moved(i, fraction[i]), own = allowed - step.common;
     Real& most = side[k < first_side(pair.kind) ? 0 : 1];
-    most = std::max(most, dot(allowed, allowed));
+    most = std::max(most, dot(own, own));
     end[k] = to_vector(step.from[i] + allowed);
   }
   if (std::sqrt(side[0]) + std::sqrt(side[1]) + smallest_gap <= c.gap) return true;
@@ -111,7 +109,8 @@ bool holds(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
   return gap_along(pair.kind, end, c.normal) >= least;
 }
 
-/// A pair's particles along its normal, from the first one, both sides towards the other [m].
+/// A pair's particles along its normal, from the first one, both sides towards the other, as seen
+/// from what moves by the common displacement [m].
 template <class Real>
 struct PairHeights {
   std::array<Real, 4> height;        ///< where they are
@@ -134,7 +133,7 @@ PairHeights<Real> heights_of(const CriticalPair<Real>& c, const GuardedPair<Real
     const std::size_t s = k < first_side(pair.kind) ? 0 : 1;
     const Real sign = s == 0 ? Real(1) : Real(-1);
     h.height[k] = sign * dot(normal, step.from[i] - origin);
-    h.displacement[k] = -sign * dot(normal, step.displacement[i]);
+    h.displacement[k] = -sign * dot(normal, step.displacement[i] - step.common);
     h.front[s] = std::min(h.front[s], h.height[k]);
     goal[s] = std::min(goal[s], h.height[k] - h.displacement[k] * fraction[i]);
   }
@@ -158,7 +157,8 @@ bool is_changed(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
                      [&](Index k) { return critical.stopped_at[at_index(k)] > c.held_at; });
 }
 
-/// Stops the particles of a pair at two planes in its gap, which is shared as they wanted it.
+/// Stops the particles of a pair at two planes in its gap, which is shared as they wanted it. The
+/// planes move by the common displacement, so that cloth that flies is not held up by itself.
 template <class Real>
 void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
                     const GuardedStep<Real>& step, Real smallest_gap,
@@ -183,17 +183,12 @@ void stop_at_planes(const CriticalPair<Real>& c, const GuardedPair<Real>& pair,
   }
 }
 
-}  // namespace
-
+/// Stops the particles of all critical pairs that would not hold otherwise.
+/// @return whether those that are stopped have room for rounding, and may move in common
 template <class Real>
-void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
-                    CriticalSteps<Real>& critical, Executor* executor, GuardCounts& counts) {
-  while (find_critical(pairs, step, regions, critical)) {
-    stop_point();
-    anchor_loose(pairs, step, regions, executor, counts);
-  }
-  counts.critical += critical.pairs.size();
-  const Real smallest_gap = regions.smallest_gap;
+bool share_gaps(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Real smallest_gap,
+                CriticalSteps<Real>& critical) {
+  bool have_room = true;
   for (int round = 0;; ++round) {
     stop_point();
     bool changed = false;
@@ -207,9 +202,50 @@ void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<
       }
       stop_at_planes(c, pair, step, smallest_gap, critical);
       c.fixed = changed = true;
+      have_room = have_room && c.gap > smallest_gap;
     }
-    if (!changed) break;
+    if (!changed) return have_room;
   }
+}
+
+}  // namespace
+
+template <class Real>
+void find_common(const AwakeParticles& awake, const std::vector<Real>& inverse_mass, Real dt,
+                 const std::function<Real()>& room, GuardedStep<Real>& step) {
+  assert(dt > 0 && !step.is_free);
+  if (awake.count < inverse_mass.size()) return;
+  Vec3d sum = Vec3d::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < inverse_mass.size(); ++i) {
+    if (inverse_mass[i] == 0) return;
+    const double own = 1 / static_cast<double>(inverse_mass[i]);
+    sum += to_vector(step.displacement[i]).template cast<double>() * own;
+    mass += own;
+  }
+  const Vec3d mean = sum / mass;
+  step.is_free = mean.norm() <= static_cast<double>(room());
+  if (!step.is_free) return;
+  step.common = to_quad<Real>(mean.cast<Real>());
+  step.mean_velocity = mean / static_cast<double>(dt);
+}
+
+template <class Real>
+void stop_crossings(GuardedPairs<Real>& pairs, GuardedStep<Real>& step, Regions<Real>& regions,
+                    CriticalSteps<Real>& critical, Executor* executor, GuardCounts& counts) {
+  while (find_critical(pairs, step, regions, critical)) {
+    stop_point();
+    anchor_loose(pairs, step, regions, executor, counts);
+  }
+  counts.critical += critical.pairs.size();
+  const bool flies = dot(step.common, step.common) > 0;
+  if (share_gaps(pairs, step, regions.smallest_gap, critical) || !flies) return;
+  step.common = {};
+  for (CriticalPair<Real>& c : critical.pairs) {
+    c.fixed = false;
+    for (const Index k : pairs[c.pair].particle) critical.fraction[at_index(k)] = 1;
+  }
+  share_gaps(pairs, step, regions.smallest_gap, critical);
 }
 
 template <class Real>
@@ -221,6 +257,7 @@ void truncate(const GuardedPairs<Real>& pairs, const GuardedCloths<Real>& cloths
   paths.strays.clear();
   ++regions.wave;
   const Real most_back = cloths.finest * Real(kMostBack) / dt;
+  const Vec3<Real> v_common = to_vector(step.common) / dt;
   const auto visit = [&](Index k) {
     const auto i = at_index(k);
     if (regions.wave_of[i] == regions.wave) return;
@@ -230,16 +267,17 @@ void truncate(const GuardedPairs<Real>& pairs, const GuardedCloths<Real>& cloths
     const Real fraction = std::exchange(critical.fraction[i], Real(1));
     assert(fraction >= 0);
     if (fraction >= 1) return;
-    const Quad<Real> allowed = step.displacement[i] * fraction;
+    const Quad<Real> allowed = step.moved(i, fraction);
     step.lost += static_cast<double>(length(step.displacement[i] - allowed));
     const Quad<Real> off = step.from[i] + allowed - paths.at(i, paths.elapsed) - paths.off_now;
     const bool off_path = !(dot(off, off) <= cloths.reach * cloths.reach);
     if (off_path) paths.strays.push_back(k);
-    step.displacement[i] = off_path && stay ? Quad<Real>() : allowed;
+    step.displacement[i] = off_path && stay ? step.common : allowed;
     state.x[i] = to_vector(step.from[i]);
     const Vec3<Real> v_drift = to_vector(step.displacement[i]) / dt;
-    note_stopped<Real>(k, state.v[i] * std::min(Real(1), most_back / state.v[i].norm()), v_drift,
-                       stopped);
+    const Vec3<Real> own = state.v[i] - v_common;
+    const Vec3<Real> v_back = v_common + own * std::min(Real(1), most_back / own.norm());
+    note_stopped<Real>(k, v_back, v_drift, stopped);
     state.v[i] = v_drift;
   };
   for (const CriticalPair<Real>& c : critical.pairs) {
@@ -260,6 +298,6 @@ void forget_critical(CriticalSteps<Real>& critical) {
   std::fill(critical.fraction.begin(), critical.fraction.end(), Real(1));
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(forget_critical, stop_crossings, truncate)
+WEFT_INSTANTIATE_FUNCTIONS(forget_critical, find_common, stop_crossings, truncate)
 
 }  // namespace weft

@@ -2,9 +2,11 @@
 
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <vector>
 
 #include "core/cloth/cloth_state.h"
+#include "core/contact/guard/awake_particles.h"
 #include "core/contact/guard/guarded_cloths.h"
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/guarded_step.h"
@@ -41,6 +43,13 @@ struct CriticalSteps {
   std::vector<std::uint64_t> stopped_at;  ///< of each particle the number of its last stop
   ColumnsByKind<Real> columns;            ///< pairs to be measured
 };
+
+/// Notes the displacement and velocity of the centre of mass, if all particles are awake, free, and
+/// have room to move by it. What is stopped as seen from there keeps what all have in common.
+/// @param room  see ClothGuard::certify
+template <class Real>
+void find_common(const AwakeParticles& awake, const std::vector<Real>& inverse_mass, Real dt,
+                 const std::function<Real()>& room, GuardedStep<Real>& step);
 
 /// Certifies or stops the displacements of particles that are too long for their regions. Particles
 /// of pairs that these endanger are anchored first.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -29,8 +31,22 @@ struct GuardedStep {
   std::uint64_t number = 0;      ///< counts calls of certify
   QuadArray<Real> from;          ///< certified positions, where rows are solved too [m]
   QuadArray<Real> displacement;  ///< wanted in the drift, and allowed where it was truncated [m]
-  double lost = 0;               ///< displacement truncated in this step [m]
-  double allowed = 0;            ///< and what is left of it, in the last one examined [m]
+  Quad<Real> common;             ///< displacement of all alike, which what is stopped keeps [m]
+  bool is_free = false;          ///< nothing but cloth is near what was stopped, or holds any
+  Vec3d mean_velocity = Vec3d::Zero();  ///< of the centre of mass, if it is [m/s]
+  double lost = 0;                      ///< displacement truncated in this step [m]
+  double allowed = 0;                   ///< and what is left of it, in the last one examined [m]
+
+  /// Where a particle goes that is allowed a fraction of what it wants beyond the common
+  /// displacement [m].
+  Quad<Real> moved(std::size_t particle, Real fraction) const {
+    return common + (displacement[particle] - common) * fraction;
+  }
+  /// How far it goes at most, whatever the fraction [m].
+  Real farthest(std::size_t particle) const {
+    const Quad<Real>& own = displacement[particle];
+    return std::sqrt(std::max(dot(own, own), dot(common, common)));
+  }
 
   /// Adds up the displacements of particles in pairs.
   /// @param active  these particles

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 
 #include "core/contact/guard/constants.h"
 #include "core/instantiate.h"
@@ -67,6 +68,20 @@ void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v) {
 }
 
 template <class Real>
+void keep_mean_velocity(const Vec3d& mean, ClothState<Real>& state) {
+  Vec3d momentum = Vec3d::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < state.v.size(); ++i) {
+    const double own = 1 / static_cast<double>(state.inverse_mass[i]);
+    momentum += state.v[i].template cast<double>() * own;
+    mass += own;
+  }
+  assert(mass > 0 && std::isfinite(mass) && "all particles are free");
+  const Vec3<Real> lack = (mean - momentum / mass).template cast<Real>();
+  for (Vec3<Real>& v : state.v) v += lack;
+}
+
+template <class Real>
 void meet_at_planes(const std::vector<Real>& inverse_mass, StoppedParticles<Real>& stopped,
                     Vec3Array<Real>& v) {
   Real enough = 0;
@@ -98,6 +113,6 @@ void note_all_stopped(const Vec3Array<Real>& v, StoppedParticles<Real>& stopped)
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(forget_stopped, note_all_stopped, stopped_particles, note_stopped,
-                           give_velocities_back, meet_at_planes)
+                           give_velocities_back, keep_mean_velocity, meet_at_planes)
 
 }  // namespace weft

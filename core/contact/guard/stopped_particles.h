@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/cloth/cloth_state.h"
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/types.h"
 
@@ -37,7 +38,8 @@ struct StopsInARow {
 /// no other particle gets, also along the contact and from what both sides have in common; so each
 /// particle gets its velocity back after the drift, and then the pairs at whose planes it stopped
 /// take their approach from each other. Only what is jammed, and stopped in kMostInARow steps
-/// before, loses it: it would press on for ever.
+/// before, loses it: it would press on for ever. Where nothing but cloth is near, all particles
+/// alike get what the centre of mass has lost by that.
 template <class Real>
 struct StoppedParticles {
   std::vector<StoppedParticle<Real>> list;
@@ -63,6 +65,11 @@ void note_stopped(Index particle, const Vec3<Real>& v, const Vec3<Real>& v_drift
 /// velocity is no longer that of the drift keeps it: something else has stopped it too.
 template <class Real>
 void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v);
+
+/// Gives all particles alike what their centre of mass lacks of a velocity.
+/// @param state  in which all particles are free
+template <class Real>
+void keep_mean_velocity(const Vec3d& mean, ClothState<Real>& state);
 
 /// Lets the stopped pairs take the velocity of their approach from each other, without a bounce:
 /// impulses along their normals, which keep momentum and take energy. Forgets all that was stopped.

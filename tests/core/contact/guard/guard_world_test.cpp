@@ -157,7 +157,8 @@ TEST_CASE("what cloth wanted in a step in which it is made to stand still counts
   ClothGuard<float> guard(world.model());
   Profile profile;
   guard.solve(state, 1e-4F, profile);
-  guard.certify(state, 1e-4F, profile);
+  guard.certify(
+      state, 1e-4F, [] { return 0.0F; }, profile);
   const double wanted = guard.counts().wanted;
   CHECK(wanted > 0);
   CHECK(guard.counts().truncated < 0.5 * wanted);
@@ -177,7 +178,8 @@ TEST_CASE("a contact that has no objects lets the guard respond as it does alone
     for (int step = 0; step < 4; ++step) {
       guard.solve(state, kStep, profile);
       respond(state, profile, guard);
-      guard.certify(state, kStep, profile);
+      guard.certify(
+          state, kStep, [] { return 0.0F; }, profile);
       for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * kStep;
       guard.finish(state);
     }
