@@ -91,6 +91,11 @@ inline constexpr double kAlike = 0.3, kDecided = 0.1;
 
 // Response.
 
+/// A row with a pinned particle does not respond if another one would have to move this many times
+/// as far as its point [1]: the pin all but holds it, and what is pushed there would be thrown.
+/// Larger: it is thrown. Smaller: cloth next to a pin lies nearer than its thickness.
+inline constexpr double kMostLever = 4;
+
 /// A gap this much wider than the thickness still counts as touching, so that rounding of positions
 /// does not let a resting particle fall for a substep, and its friction with it [m]. Larger: cloth
 /// rests farther off. Smaller: it trembles.

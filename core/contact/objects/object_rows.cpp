@@ -236,13 +236,19 @@ void add_row(const ObjectRowSource<Real>& source, std::initializer_list<Index> p
   // What is pinned stops only what moves.
   const bool held = !(mobility > 0);
   if (held && !frame.tracked) return;
-  for (std::size_t k = 0; k < row.count && !held; ++k)
-    row.share[k] = row.weight[k] * state.inverse_mass[at_index(row.particle[k])] / mobility;
+  bool any_pinned = false;
+  Real lever = 0;
+  for (std::size_t k = 0; k < row.count && !held; ++k) {
+    const Real inverse_mass = state.inverse_mass[at_index(row.particle[k])];
+    row.share[k] = row.weight[k] * inverse_mass / mobility;
+    lever = std::max(lever, row.share[k]);
+    any_pinned = any_pinned || inverse_mass == 0;
+  }
   row.least_height = static_cast<Real>(least);
   row.distance = barrier.distance;
   row.keep = std::max(barrier.keep, source.clearance.smallest_gap);
   row.collider = static_cast<Index>(collider);
-  row.responds = responds && !held;
+  row.responds = responds && !held && !(any_pinned && lever > Real(kMostLever));
   row.cloth = cloth_of(source.cloths, row.particle[0]);
   const ContactDef& settings = settings_of(source.cloths, row);
   row.thickness = static_cast<Real>(settings.thickness);

@@ -57,3 +57,27 @@ TEST_CASE("a sheet that starts beside an object is not called a bad start") {
     CHECK(world.bad_starts().empty());
   }
 }
+
+TEST_CASE(
+    "a sheet pinned beside the edge of a box, nearer than its thickness, is lifted and rests") {
+  const double gap = GENERATE(0.0005, 0.001, 0.002);
+  const char* const fabric = GENERATE("denim", "silk");
+  CAPTURE(gap, fabric);
+  WorldDef def;
+  set_field(def, "fabric", fabric);
+  ClothDef& sheet = def.cloths[0];
+  sheet.rows = sheet.columns = 15;
+  sheet.width = sheet.height = 0.4;
+  sheet.u = Vec3d::UnitX();
+  sheet.v = Vec3d::UnitZ();
+  sheet.origin = Vec3d(0.16, 0.3 + gap, -0.2);
+  sheet.fabric.thickness = 0.004;
+  def.environment.damping = 2;
+  def.colliders = {{"table", BoxDef{Vec3d(0, 0.15, 0), Vec3d(0.5, 0.15, 0.5)}}};
+  def.pins = {{Index(193), 0.05, {}}};
+  World<float> world(def);
+  for (int k = 0; k < 240; ++k) REQUIRE_FALSE(world.step().divergence);
+  CHECK(world.report().largest_strain < 0.1);
+  CHECK(world.state().x[0][1] == Approx(0.304F).margin(2e-4));
+  CHECK(world.deepest_penetration() <= sheet.fabric.thickness);
+}
