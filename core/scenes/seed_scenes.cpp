@@ -21,7 +21,7 @@ void use_seed(WorldDef& def) {
   }
   def.relaxation.substeps = 8;
   def.relaxation.sweeps = 10;
-  def.relaxation.damping = 0.005;
+  def.relaxation.damping = 0.04;
   def.contact.seed.lift = 0.004;
   def.contact.seed.passes = 4;
 }

@@ -25,6 +25,7 @@ struct Tick {
   ClothState<Real>& state;
   RelaxationWorkspace<Real>& work;
   Profile& profile;
+  double keeps = 1;  ///< fraction of a velocity that relaxation.damping leaves in a substep [1]
 
   bool has_external_forces() const { return surroundings.air || !idle(grabs); }
   bool compliant() const { return solver.compliance > 0; }
@@ -39,7 +40,7 @@ bool in_rows(const Tick<Real>& tick, std::size_t part) {
 /// Fraction of a velocity left by a substep without forces.
 template <class Real>
 double kept(const Tick<Real>& tick) {
-  return (1 - tick.solver.damping) / (1 + tick.surroundings.damping * static_cast<double>(tick.dt));
+  return tick.keeps / (1 + tick.surroundings.damping * static_cast<double>(tick.dt));
 }
 
 /// Everything that is a force, not a constraint, but gravity and the bending that is swept by rows.
@@ -349,17 +350,15 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
   assert(dt > 0 && substeps >= 1 && solver.sweeps >= 1);
   assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
   assert(state.inverse_mass.size() == model.mass.size());
-  assert(work.force.size() == model.mass.size() && "prepared for this model");
-  assert(work.grids.size() == model.parts.size());
+  assert(work.force.size() == model.mass.size() && work.grids.size() == model.parts.size());
   Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, collision,
                   state, work,         profile};
+  tick.keeps = std::pow(1 - solver.damping, 1.0 / substeps);
   AdvanceResult result;
   result.before = timed_energies(tick).energies;
-  if (tick.compliant()) {
-    const auto softness = static_cast<Real>(solver.compliance / (dt * dt));
-    for (GridRelaxation<Real>& grid : work.grids) {
-      if (grid.fits()) grid.set_masses(state.inverse_mass, softness);
-    }
+  const auto softness = static_cast<Real>(solver.compliance / (dt * dt));
+  for (GridRelaxation<Real>& grid : work.grids) {
+    if (tick.compliant() && grid.fits()) grid.set_masses(state.inverse_mass, softness);
   }
   if (rows_alone(tick)) {
     advance_rows(tick, substeps);

@@ -20,7 +20,7 @@ namespace weft {
 struct RelaxationDef {
   int sweeps = 30;        ///< k, over all springs, per substep
   int substeps = 1;       ///< least per tick; stiff bending or a hand may require more
-  double damping = 0.01;  ///< c of the seed's eq. (5), per substep
+  double damping = 0.01;  ///< c of the seed's eq. (5), whose tick was one step
   double compliance = 0;  ///< 0: springs are rigid (the seed); 1: as compliant as the fabric (XPBD)
 };
 
@@ -29,7 +29,7 @@ template <class Def, class Visitor>
 void visit_fields_of_relaxation(Def& r, Visitor&& visit) {
   visit(FieldInfo{"sweeps", 1, 10000, "", "sweeps over all springs per substep"}, r.sweeps);
   visit(FieldInfo{"substeps", 1, kMostSubsteps, "", "fewest substeps per tick"}, r.substeps);
-  visit(FieldInfo{"damping", 0, 0.999, "", "fraction of the motion lost per substep"}, r.damping);
+  visit(FieldInfo{"damping", 0, 0.999, "", "fraction of the motion lost per tick"}, r.damping);
   visit(FieldInfo{"compliance", 0, 1e6, "",
                   "0: rigid springs; 1: those of the fabric in the limit of many substeps and "
                   "sweeps, else softer"},

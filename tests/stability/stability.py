@@ -54,7 +54,6 @@ SOLVERS = {
         "relaxation.compliance=1",
         "relaxation.substeps=20",
         "relaxation.sweeps=4",
-        "relaxation.damping=0.0005",
     ],
 }
 # Cases that would take relaxation, however it is set, more than five minutes.

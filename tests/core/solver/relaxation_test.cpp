@@ -46,12 +46,13 @@ struct Chain {
     model.parts[0].triangles = {};
     solver.damping = 0;
   }
-  void advance(double dt) {
+  void advance(double dt, int substeps = 1) {
     RelaxationWorkspace<double> work;
     work.prepare(model);
     Grabs<double> grabs;
     Profile profile;
-    advance_relaxation<double>(model, surroundings, solver, dt, 1, grabs, {}, state, work, profile);
+    advance_relaxation<double>(model, surroundings, solver, dt, substeps, grabs, {}, state, work,
+                               profile);
   }
   double place(std::size_t i) const { return state.x[i][0]; }
 };
@@ -74,6 +75,17 @@ TEST_CASE("eqs. (3) to (5): a free particle keeps 1 - c of its motion and falls 
   chain.advance(1.0 / 64);
   CHECK(chain.state.x[0] == Vec3d(0.0234375, -0.00390625, 0));
   CHECK(chain.state.v[0] == Vec3d(1.5, -0.25, 0));
+}
+
+TEST_CASE("a tick takes 1 - c of a free particle's motion, in however many substeps") {
+  for (const int substeps : {1, 2, 16, 64}) {
+    INFO(substeps << " substeps");
+    Chain chain({0.0}, 1, 1);
+    chain.state.v[0] = Vec3d(2, 0, 0);
+    chain.solver.damping = 0.25;
+    chain.advance(1.0 / 64 / substeps, substeps);
+    CHECK(chain.state.v[0][0] == Approx(1.5).epsilon(1e-12));
+  }
 }
 
 TEST_CASE("Provot: a spring too long or too short by d moves each end by d/2") {
