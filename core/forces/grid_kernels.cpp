@@ -18,6 +18,9 @@ namespace weft {
 #define WEFT_DISPATCH(Real, Kind)                                                                 \
   HWY_EXPORT(take_apart_##Kind);                                                                  \
   HWY_EXPORT(put_together_##Kind);                                                                \
+  HWY_EXPORT(take_places_##Kind);                                                                 \
+  HWY_EXPORT(put_places_##Kind);                                                                  \
+  HWY_EXPORT(take_motion_##Kind);                                                                 \
   HWY_EXPORT(internal_forces_##Kind);                                                             \
   HWY_EXPORT(elastic_energy_##Kind);                                                              \
   HWY_EXPORT(begin_rows_##Kind);                                                                  \
@@ -46,9 +49,19 @@ namespace weft {
                     std::ptrdiff_t last) {                                                        \
     HWY_DYNAMIC_DISPATCH(advance_##Kind)(grid, step, first, last);                                \
   }                                                                                               \
-  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v, Real* x, \
-                  Real* remainder) {                                                              \
-    HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, has_external, v, x, remainder);                  \
+  void grid_take_places(const GridView<Real>& grid, const Real* from, Real* to,                   \
+                        std::ptrdiff_t pitch) {                                                   \
+    HWY_DYNAMIC_DISPATCH(take_places_##Kind)(grid, from, to, pitch);                              \
+  }                                                                                               \
+  void grid_put_places(const GridView<Real>& grid, Real* to) {                                    \
+    HWY_DYNAMIC_DISPATCH(put_places_##Kind)(grid, to);                                            \
+  }                                                                                               \
+  void grid_take_motion(const GridView<Real>& grid, const Real* x, const Real* v) {               \
+    HWY_DYNAMIC_DISPATCH(take_motion_##Kind)(grid, x, v);                                         \
+  }                                                                                               \
+  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v,          \
+                  Real* x) {                                                                      \
+    HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, has_external, v, x);                             \
   }                                                                                               \
   void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {                    \
     HWY_DYNAMIC_DISPATCH(air_forces_##Kind)(grid, pressure, skin);                                \

@@ -27,10 +27,16 @@ namespace weft {
    * their line of scratch. */                                                                     \
   void grid_advance(const GridView<Real>& grid, const GridStep<Real>& step, std::ptrdiff_t first,  \
                     std::ptrdiff_t last);                                                          \
-  /** Drift with velocities and positions of the model, which are taken over. Adds powers of the   \
-   * external forces, if there are any, as above. @param remainder  see `drifted` */               \
-  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v, Real* x,  \
-                  Real* remainder);                                                                \
+  /** Splits places of the model into three lines a row, as seen from the origin. */               \
+  void grid_take_places(const GridView<Real>& grid, const Real* from, Real* to,                    \
+                        std::ptrdiff_t pitch);                                                     \
+  /** Stores the places into the model's [m]. */                                                   \
+  void grid_put_places(const GridView<Real>& grid, Real* to);                                      \
+  /** Takes over places that something else has moved in the model, and velocities. */             \
+  void grid_take_motion(const GridView<Real>& grid, const Real* x, const Real* v);                 \
+  /** The same, and a drift, which is stored into the model. Adds powers of the external forces,   \
+   * if there are any, as above. */                                                                \
+  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v, Real* x); \
   /** Forces of the air into `external`. @param pressure  1/2 rho C_n [kg/m^3]                     \
    * @param skin  c_t [kg/(m^2 s)] */                                                              \
   void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin);                      \

@@ -70,6 +70,60 @@ HWY_INLINE void put_together(const GridView<Real>& g, const Real* from, std::ptr
              HWY_ATTR { store_particles(d, load(d, from + r * pitch + c, g.line), to + number); });
 }
 
+/// The origin of all places of a grid.
+template <class D, class Real = hn::TFromD<D>>
+HWY_INLINE Triple<hn::Vec<D>> origin_of(D d, const GridView<Real>& g) {
+  return {hn::Set(d, g.origin[0]), hn::Set(d, g.origin[1]), hn::Set(d, g.origin[2])};
+}
+
+/// Splits places of the model, as seen from the origin.
+template <class Real>
+HWY_INLINE void take_places(const GridView<Real>& g, const Real* from, Real* to,
+                            std::ptrdiff_t pitch) {
+  for_each_stretch(
+      g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
+        store(d, load_particles(d, from + number) - origin_of(d, g), to + r * pitch + c, g.line);
+      });
+}
+
+/// Places for the model, rounded.
+template <class Real>
+HWY_INLINE void put_places(const GridView<Real>& g, Real* to) {
+  for_each_stretch(
+      g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
+        const auto place = load(d, g.motion + r * g.pitch() + c, g.line) + origin_of(d, g);
+        store_particles(d, place, to + number);
+      });
+}
+
+/// Takes over a coordinate of the model if something else has moved it, which then has lost
+/// nothing to rounding.
+template <class V>
+HWY_INLINE void take_over(V of_model, V origin, V& place, V& lost) {
+  const auto same = hn::Eq(hn::Add(place, origin), of_model);
+  place = hn::IfThenElse(same, place, hn::Sub(of_model, origin));
+  lost = hn::IfThenElseZero(same, lost);
+}
+
+/// Calls visit(d, row, column, number, place, lost) for stretches, whose places and what these lost
+/// have taken over what moved in the model, and stores what it makes of them.
+template <class Real, class Visit>
+HWY_INLINE void visit_places(const GridView<Real>& g, const Real* x, Visit&& visit) {
+  for_each_stretch(g,
+                   [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
+                     Real* const motion = g.motion + r * g.pitch() + c;
+                     Real* const remainder = motion + GridView<Real>::kRemainderLine * g.line;
+                     auto place = load(d, motion, g.line), lost = load(d, remainder, g.line);
+                     const auto of_model = load_particles(d, x + number), origin = origin_of(d, g);
+                     take_over(of_model.x, origin.x, place.x, lost.x);
+                     take_over(of_model.y, origin.y, place.y, lost.y);
+                     take_over(of_model.z, origin.z, place.z, lost.z);
+                     visit(d, r, c, number, place, lost);
+                     store(d, place, motion, g.line);
+                     store(d, lost, remainder, g.line);
+                   });
+}
+
 }  // namespace HWY_NAMESPACE
 }  // namespace weft
 HWY_AFTER_NAMESPACE();

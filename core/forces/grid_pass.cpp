@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <array>
 #include <cassert>
+#include <numeric>
 #include <utility>
 
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/constants.h"
+#include "core/forces/grid_coefficients.h"
 #include "core/forces/grid_kernels.h"
+#include "core/geometry/exact_origin.h"
 
 namespace weft {
 namespace {
@@ -56,28 +59,6 @@ void GridPass<Real>::lay_out(const ClothPart<Real>& part) {
   view_.row = rows_.data();
 }
 
-template <class Real>
-std::vector<Real> GridPass<Real>::coefficient_row(const ClothPart<Real>& part, int r) const {
-  const GridCells& g = part.cells;
-  const GridSprings<Real>& springs = *part.grid_springs;
-  const QuadraticBending<Real>& bending = part.quadratic_bending;
-  std::vector<Real> lines(static_cast<std::size_t>(kGridCoefficients * view_.line), Real(0));
-  for (int c = 0; c < g.columns; ++c) {
-    const auto set = [&](GridCoefficient k, Real full, double share) {
-      lines[static_cast<std::size_t>(k * view_.line + c)] = full * static_cast<Real>(share);
-    };
-    const double cell = g.has_cell(r, c);
-    set(kWarp, springs.warp, share_along(g, r, c));
-    set(kWeft, springs.weft, share_down(g, r, c));
-    set(kShear, springs.shear, cell);
-    set(kTwist, bending.twist, cell);
-    set(kBendU, bending.along_u, share_bend_u(g, r, c + 1));
-    set(kBendV, bending.along_v, share_bend_v(g, r + 1, c));
-    set(kHasCell, Real(1), cell);
-  }
-  return lines;
-}
-
 /// Equal rows, which most rows of a whole grid are, share their coefficients.
 template <class Real>
 void GridPass<Real>::lay_out_coefficients(const ClothPart<Real>& part) {
@@ -85,7 +66,7 @@ void GridPass<Real>::lay_out_coefficients(const ClothPart<Real>& part) {
   std::vector<std::size_t> place;
   std::vector<Real> last;
   for (int r = 0; r < view_.rows; ++r) {
-    std::vector<Real> lines = coefficient_row(part, r);
+    std::vector<Real> lines = coefficient_row(part, r, view_.line);
     if (lines != last) coefficients_.insert(coefficients_.end(), lines.begin(), lines.end());
     place.push_back(coefficients_.size() - lines.size());
     last = std::move(lines);
@@ -99,6 +80,7 @@ template <class Real>
 void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   view_ = {};
   if (!part.grid_springs || part.hinges.count > 0 || part.locks.count > 0) return;
+  particles_ = part.particles;
   lay_out(part);
   lay_out_coefficients(part);
   view_.springs = *part.grid_springs;
@@ -142,7 +124,7 @@ void GridPass<Real>::load_paths(const Vec3Array<Real>& base, const Vec3Array<Rea
   assert(!paths_.empty() && "allocate_paths comes first");
   assert(base.size() == velocity.size());
   const std::ptrdiff_t pitch = 6 * view_.line;
-  grid_take_apart(view_, base.data()->data(), paths_.data(), pitch);
+  grid_take_places(view_, base.data()->data(), paths_.data(), pitch);
   grid_take_apart(view_, velocity.data()->data(), paths_.data() + 3 * view_.line, pitch);
 }
 
@@ -193,7 +175,7 @@ void GridPass<Real>::store(std::span<const Index> particles, Vec3Array<Real>& x,
     const Real* const motion =
         view_.motion + (row - rows_.begin()) * view_.pitch() + row->column + (i - row->particle);
     for (int k = 0; k < 3; ++k) {
-      x[static_cast<std::size_t>(i)][k] = motion[k * view_.line];
+      x[static_cast<std::size_t>(i)][k] = view_.origin[k] + motion[k * view_.line];
       v[static_cast<std::size_t>(i)][k] = motion[(GridView<Real>::kVelocityLine + k) * view_.line];
     }
   }
@@ -313,19 +295,52 @@ void GridPass<Real>::for_bands(Executor* executor, Work&& work) {
 template <class Real>
 void GridPass<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Executor* executor) {
   assert(v.size() == x.size());
+  const auto first = static_cast<std::size_t>(particles_.first);
+  const std::span own = std::span(x).subspan(first, static_cast<std::size_t>(particles_.count));
+  std::copy_n(exact_origin<Real>(own).data(), 3, view_.origin);
   for_bands(executor, [&](int, const GridView<Real>& rows) {
-    grid_take_apart(rows, x.data()->data(), rows.motion, rows.pitch());
+    grid_take_places(rows, x.data()->data(), rows.motion, rows.pitch());
+    for (int r = 0; r < rows.rows; ++r)
+      std::fill_n(rows.remainder() + r * rows.pitch(), 3 * rows.line, Real(0));
+  });
+  load_velocities(v, executor);
+}
+
+template <class Real>
+void GridPass<Real>::take_over(const Vec3Array<Real>& x, const Vec3Array<Real>& v,
+                               Executor* executor) {
+  assert(v.size() == x.size());
+  for_bands(executor, [&](int, const GridView<Real>& rows) {
+    grid_take_motion(rows, x.data()->data(), v.data()->data());
+  });
+}
+
+template <class Real>
+void GridPass<Real>::load_velocities(const Vec3Array<Real>& v, Executor* executor) {
+  for_bands(executor, [&](int, const GridView<Real>& rows) {
     grid_take_apart(rows, v.data()->data(), velocities(rows), rows.pitch());
   });
 }
 
 template <class Real>
+void GridPass<Real>::forget_remainder(Index particle, const Vec3<Real>& x) {
+  assert(particles_.contains(particle));
+  auto row = rows_.begin();
+  while (particle >= row->particle + row->count) ++row;
+  Real* const at =
+      view_.motion + (row - rows_.begin()) * view_.pitch() + row->column + particle - row->particle;
+  for (int k = 0; k < 3; ++k) {
+    at[k * view_.line] = x[k] - view_.origin[k];
+    at[(GridView<Real>::kRemainderLine + k) * view_.line] = 0;
+  }
+}
+
+template <class Real>
 void GridPass<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Executor* executor) {
   assert(v.size() == x.size());
-  for_bands(executor, [&](int, const GridView<Real>& rows) {
-    grid_put_together(rows, rows.motion, rows.pitch(), x.data()->data());
-    grid_put_together(rows, velocities(rows), rows.pitch(), v.data()->data());
-  });
+  for_bands(executor,
+            [&](int, const GridView<Real>& rows) { grid_put_places(rows, x.data()->data()); });
+  store_velocities(v, executor);
 }
 
 template <class Real>
@@ -337,28 +352,15 @@ void GridPass<Real>::store_velocities(Vec3Array<Real>& v, Executor* executor) {
 
 template <class Real>
 double GridPass<Real>::drift(Real dt, bool has_external, const Vec3Array<Real>& v,
-                             Vec3Array<Real>& x, Vec3Array<Real>& remainder, Executor* executor) {
-  assert(x.size() == v.size() && remainder.size() == x.size());
+                             Vec3Array<Real>& x, Executor* executor) {
+  assert(x.size() == v.size());
   assert(!has_external || !external_.empty());
   std::array<double, kMostBands> power{};
   for_bands(executor, [&](int band, const GridView<Real>& rows) {
-    grid_drift(rows, dt, has_external, v.data()->data(), x.data()->data(),
-               remainder.data()->data());
+    grid_drift(rows, dt, has_external, v.data()->data(), x.data()->data());
     power[static_cast<std::size_t>(band)] = take_power(rows, has_external);
   });
-  double sum = 0;
-  for (const double part : power) sum += part;
-  return sum;
-}
-
-template <class Real>
-void GridPass<Real>::load_remainder(const Vec3Array<Real>& remainder) {
-  grid_take_apart(view_, remainder.data()->data(), view_.remainder(), view_.pitch());
-}
-
-template <class Real>
-void GridPass<Real>::store_remainder(Vec3Array<Real>& remainder) const {
-  grid_put_together(view_, view_.remainder(), view_.pitch(), remainder.data()->data());
+  return std::accumulate(power.begin(), power.end(), 0.0);
 }
 
 template <class Real>

@@ -41,9 +41,16 @@ class GridPass {
 
   bool fits() const { return view_.rows > 0; }
 
-  /// Loads positions and velocities of the whole model for the calls below.
+  /// Loads positions and velocities of the whole model for the calls below, and chooses the origin
+  /// from which they are seen from now on.
   /// @param executor  runs bands of rows on its threads; may be null, here and below
   void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Executor* executor = nullptr);
+  /// Loads velocities, and positions that are no longer those that were stored.
+  void take_over(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Executor* executor = nullptr);
+  void load_velocities(const Vec3Array<Real>& v, Executor* executor = nullptr);
+  /// Forgets what drifts lost of a particle's position to rounding.
+  /// @param particle  in the arrays of the whole model
+  void forget_remainder(Index particle, const Vec3<Real>& x);
   void load_positions(const Vec3Array<Real>& x);
   void load_inverse_mass(const std::vector<Real>& inverse_mass);
   void load_wind(const Vec3Array<Real>& wind);
@@ -80,15 +87,10 @@ class GridPass {
   /// @returns power of the external forces at the new velocities [W]
   double advance(const GridStep<Real>& step, Executor* executor = nullptr);
 
-  /// Loads the model's velocities, moves its positions by dt and loads them too.
+  /// Takes over the model's motion, and moves its positions by dt.
   /// @returns power of the external forces [W]; 0 without them
-  /// @param remainder  what drifts lost of the model's positions to rounding [m]
   double drift(Real dt, bool has_external, const Vec3Array<Real>& v, Vec3Array<Real>& x,
-               Vec3Array<Real>& remainder, Executor* executor = nullptr);
-
-  /// The same of the grid's own positions, for and after `advance`.
-  void load_remainder(const Vec3Array<Real>& remainder);
-  void store_remainder(Vec3Array<Real>& remainder) const;
+               Executor* executor = nullptr);
 
   /// Forces of springs, dashpots and bending on each particle of the part [N]. Overwrites its range
   /// of `force`, which is the whole model's, and the external forces, whose arrays it sizes.
@@ -123,9 +125,9 @@ class GridPass {
   Real* allocate(AlignedVector<Real>& array, std::ptrdiff_t lines) const;
   void lay_out(const ClothPart<Real>& part);
   void lay_out_coefficients(const ClothPart<Real>& part);
-  std::vector<Real> coefficient_row(const ClothPart<Real>& part, int row) const;
 
   GridView<Real> view_;
+  IndexRange particles_;
   Real air_normal_ = 0, air_tangential_ = 0;
   std::vector<GridRow<Real>> rows_;
   std::vector<Band> bands_;

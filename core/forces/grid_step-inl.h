@@ -237,29 +237,39 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
   }
 }
 
-/// Moves positions of the model by its velocities and loads both. Accumulates the powers of the
-/// external forces in their line.
+/// Takes over what moved in the model and its velocities, drifts, and stores the places into the
+/// model. Accumulates the powers of the external forces in their line.
 template <class Real>
-HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool has_external, const Real* v, Real* x,
-                      Real* remainder) {
+HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool has_external, const Real* v, Real* x) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
-  for_each_stretch(
-      g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
-        const auto speed = load_particles(d, v + number);
-        auto place = load_particles(d, x + number), lost = load_particles(d, remainder + number);
-        const auto seconds = hn::Set(d, dt);
-        place = {drifted(d, place.x, speed.x, seconds, lost.x),
-                 drifted(d, place.y, speed.y, seconds, lost.y),
-                 drifted(d, place.z, speed.z, seconds, lost.z)};
-        store_particles(d, place, x + number);
-        store_particles(d, lost, remainder + number);
-        Real* const motion = g.motion + r * g.pitch() + c;
-        store(d, place, motion, g.line);
-        store(d, speed, motion + GridView<Real>::kVelocityLine * g.line, g.line);
-        if (!has_external) return;
-        const auto external = load(d, g.external + 3 * r * g.line + c, g.line);
-        hn::StoreU(fused_dot(d, external, speed, hn::LoadU(d, power + c)), d, power + c);
-      });
+  visit_places(g, x,
+               [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number, auto& place,
+                   auto& lost) HWY_ATTR {
+                 const auto speed = load_particles(d, v + number);
+                 const auto seconds = hn::Set(d, dt);
+                 place = {drifted(d, place.x, speed.x, seconds, lost.x),
+                          drifted(d, place.y, speed.y, seconds, lost.y),
+                          drifted(d, place.z, speed.z, seconds, lost.z)};
+                 store_particles(d, place + origin_of(d, g), x + number);
+                 store(d, speed,
+                       g.motion + r * g.pitch() + c + GridView<Real>::kVelocityLine * g.line,
+                       g.line);
+                 if (!has_external) return;
+                 const auto external = load(d, g.external + 3 * r * g.line + c, g.line);
+                 hn::StoreU(fused_dot(d, external, speed, hn::LoadU(d, power + c)), d, power + c);
+               });
+}
+
+/// Takes over what moved in the model, and its velocities.
+template <class Real>
+HWY_INLINE void take_motion(const GridView<Real>& g, const Real* x, const Real* v) {
+  visit_places(g, x,
+               [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number, auto&, auto&)
+                   HWY_ATTR {
+                     store(d, load_particles(d, v + number),
+                           g.motion + r * g.pitch() + c + GridView<Real>::kVelocityLine * g.line,
+                           g.line);
+                   });
 }
 
 }  // namespace HWY_NAMESPACE

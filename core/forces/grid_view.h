@@ -40,9 +40,12 @@ struct GridView {
   int rows = 0, columns = 0;
   std::ptrdiff_t line = 0;             ///< numbers per line, at least the columns in whole vectors
   const GridRow<Real>* row = nullptr;  ///< per row
-  /// x y z [m], 1/m [1/kg] (0 where pinned), vx vy vz [m/s], and what drifts lost of x y z to
-  /// rounding in this tick [m].
+  /// x y z from the origin [m], 1/m [1/kg] (0 where pinned), vx vy vz [m/s], and what drifts lost
+  /// of x y z to rounding in this tick [m].
   Real* motion = nullptr;
+  /// Near the places when the tick began [m]. Seen from there they change in finer steps than those
+  /// of the model's floats: such steps would shake stiff cloth, and what shakes does not stick.
+  Real origin[3] = {};
   Real* external = nullptr;   ///< forces of air and slings, three lines per row [N]
   Real* wind = nullptr;       ///< velocity of the air, three lines per row [m/s]
   const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0

@@ -121,12 +121,25 @@ void load_grids(Tick<Real>& tick) {
 }
 
 template <class Real>
-void drift_in_arrays(Tick<Real>& tick, bool rows_too) {
-  if (tick.work.all_grids && !rows_too) return;
+void take_over_grids(Tick<Real>& tick, bool places_too) {
+  const StageTimer timer(tick.profile, Stage::integration, 0);
+  const ClothState<Real>& state = tick.state;
+  for (std::size_t p = 0; p < tick.parts(); ++p) {
+    if (!tick.by_rows(p) || tick.rests(p)) continue;
+    if (places_too)
+      tick.grid(p).take_over(state.x, state.v, tick.work.executor);
+    else
+      tick.grid(p).load_velocities(state.v, tick.work.executor);
+  }
+}
+
+template <class Real>
+void drift_meshes(Tick<Real>& tick) {
+  if (tick.work.all_grids) return;
   Vec3Array<Real>&x = tick.state.x, &v = tick.state.v, &remainder = tick.work.remainder;
   any_of_awake(tick.model, tick.state, kPassedAtLeast, tick.work.executor,
                [&](std::size_t p, std::size_t first, std::size_t last) {
-                 if (rows_too || !tick.by_rows(p))
+                 if (!tick.by_rows(p))
                    run_drift(3 * (last - first), v[first].data(), tick.dt, x[first].data(),
                              remainder[first].data());
                  return false;
@@ -142,7 +155,6 @@ double advance_alone(Tick<Real>& tick, std::size_t p, const Kicks<Real>& kicks, 
   GridPass<Real>& grid = tick.grid(p);
   HeldForces<Real>* const held = tick.collision.held;
   double work = 0;
-  grid.load_remainder(tick.work.remainder);
   for (int s = 0; s <= substeps; ++s) {
     stop_point();
     const bool last = s == substeps;
@@ -177,7 +189,6 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
     return 0;
   }
   tick.work.load_paths(*paths);
-  for (GridPass<Real>& grid : tick.work.grids) grid.load_remainder(tick.work.remainder);
   Real time = paths->time, kept_time = time;
   Aabb<Real> box = box_off_paths(tick, time), kept_box = box;
   const Spell<Real> begin{*paths, clearance, time, box.centre()};
@@ -214,17 +225,16 @@ double advance_calm(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps, in
     renew = off > paths->reach * static_cast<Real>(kCalmRenewal);
   }
   guard.leave_calm_paths(s - first, time, box.centre(), renew);
-  for (GridPass<Real>& grid : tick.work.grids) {
+  for (GridPass<Real>& grid : tick.work.grids)
     grid.store(tick.state.x, tick.state.v, tick.work.executor);
-    grid.store_remainder(tick.work.remainder);
-  }
   return work;
 }
 
 #define WEFT_INSTANTIATE(Real)                                                      \
   template double advance_grid(Tick<Real>&, std::size_t, const Kick<Real>&, Real);  \
   template void load_grids(Tick<Real>&);                                            \
-  template void drift_in_arrays(Tick<Real>&, bool);                                 \
+  template void take_over_grids(Tick<Real>&, bool);                                 \
+  template void drift_meshes(Tick<Real>&);                                          \
   template double advance_alone(Tick<Real>&, std::size_t, const Kicks<Real>&, int); \
   template double advance_calm(Tick<Real>&, const Kicks<Real>&, int, int&, NextCalm&);
 WEFT_INSTANTIATE(float)

@@ -12,14 +12,18 @@ namespace weft {
 template <class Real>
 double advance_grid(Tick<Real>& tick, std::size_t part, const Kick<Real>& kick, Real drift);
 
-/// Loads the grids of all parts whose state may have changed.
+/// Loads the grids of all parts whose state may have changed, at the start of a tick.
 template <class Real>
 void load_grids(Tick<Real>& tick);
 
-/// Drifts cloths in the model's arrays.
-/// @param rows_too  those as well that grids could drift along with their own arrays
+/// Lets grids take over velocities.
+/// @param places_too  and what something else has moved
 template <class Real>
-void drift_in_arrays(Tick<Real>& tick, bool rows_too);
+void take_over_grids(Tick<Real>& tick, bool places_too);
+
+/// Drifts cloths that are no grids, in the model's arrays.
+template <class Real>
+void drift_meshes(Tick<Real>& tick);
 
 /// All substeps of a grid that nothing else touches: the particles stay in its own arrays.
 /// @returns work of the air [J]

@@ -154,7 +154,7 @@ void evaluate_forces(Tick<Real>& tick, const Vec3Array<Real>& velocity) {
     }
     const StageTimer timer(tick.profile, Stage::stretch, membrane_elements(part));
     tick.profile[Stage::bending].work += quadratic_stencil_count(part);
-    tick.grid(p).load(tick.state.x, velocity, tick.work.executor);
+    tick.grid(p).take_over(tick.state.x, velocity, tick.work.executor);
     tick.grid(p).compute_internal_forces(tick.work.internal);
   }
   evaluate_external_forces(tick, velocity, true);
@@ -208,32 +208,23 @@ double external_work(const Tick<Real>& tick, const IndexRange& range) {
   return ((sums[0] + sums[1]) + (sums[2] + sums[3])) * static_cast<double>(tick.dt);
 }
 
-/// Whether grids reload all particles after each drift, because contact may have changed them.
-template <class Real>
-bool takes_over(const Collision<Real>& collision) {
-  return collision.seed || collision.guard;
-}
-
 /// Drifts all particles. @returns work of the external forces [J]
 template <class Real>
 double drift(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, 0);
-  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v, &lost = tick.work.remainder;
+  Vec3Array<Real>&x = tick.state.x, &v = tick.state.v;
   keep_held(tick);
-  const bool along =
-      tick.solver.damping_sweeps == 1 && (tick.has_external_forces || !takes_over(tick.collision));
+  const bool swept = tick.solver.damping_sweeps > 1;
   double work = 0;
   for (std::size_t p = 0; p < tick.parts(); ++p) {
     if (tick.sleeps(p)) continue;
-    if (tick.by_rows(p) && along) {
-      GridPass<Real>& grid = tick.grid(p);
-      work += grid.drift(tick.dt, tick.has_external_forces, v, x, lost, tick.work.executor) *
-              static_cast<double>(tick.dt);
-    } else {
-      work += external_work(tick, tick.part(p).particles);
-    }
+    if (!tick.by_rows(p) || swept) work += external_work(tick, tick.part(p).particles);
+    if (!tick.by_rows(p)) continue;
+    const bool pulled = tick.has_external_forces && !swept;
+    work += tick.grid(p).drift(tick.dt, pulled, v, x, tick.work.executor) *
+            static_cast<double>(tick.dt);
   }
-  drift_in_arrays(tick, !along);
+  drift_meshes(tick);
   return work;
 }
 
@@ -299,9 +290,9 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
     collision.before_drift(state, tick.dt, tick.profile);
     work += drift(tick);
     work += work_of_hands(state.v, tick.grabs);
-    collision.after_drift(state, tick.dt, tick.profile);
+    if (collision.after_drift(state, tick.dt, tick.profile))
+      take_over_grids(tick, collision.seed != nullptr);
     meter_drift(tick, tick.dt);
-    if (takes_over(collision)) load_grids(tick);
   }
   collision.before_kick(state);
   if (collision.meter) collision.meter->begin(state);
@@ -335,7 +326,7 @@ EnergyReading timed_energies(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::diagnostics, 1);
   std::optional<ElasticEnergy>& elastic = tick.work.elastic;
   if (!elastic) {
-    if (tick.solver.damping_sweeps > 1 || tick.collision.guard) load_grids(tick);
+    if (tick.solver.damping_sweeps > 1 || tick.collision.guard) take_over_grids(tick, true);
     elastic = present_energy(tick);
   }
   return read_energies(tick.model, tick.state, tick.surroundings.gravity, *elastic);

@@ -72,10 +72,11 @@ template <class Real>
 struct VerletWorkspace {
   // These are empty if all parts are kicked in one pass with their forces; `external` is still
   // needed for sling impulses, and for air on parts that are not grids.
-  Vec3Array<Real> internal;              ///< forces of springs and bending [N]
-  Vec3Array<Real> external;              ///< forces of sling impulses and air [N]
-  Vec3Array<Real> velocity;              ///< estimate of the velocity for the dashpots [m/s]
-  Vec3Array<Real> remainder;             ///< of positions: lost by this tick's drifts to rounding
+  Vec3Array<Real> internal;  ///< forces of springs and bending [N]
+  Vec3Array<Real> external;  ///< forces of sling impulses and air [N]
+  Vec3Array<Real> velocity;  ///< estimate of the velocity for the dashpots [m/s]
+  /// Of positions of meshes: lost by this tick's drifts to rounding [m].
+  Vec3Array<Real> remainder;
   std::optional<ElasticEnergy> elastic;  ///< at the present positions, if known; reset it when
                                          ///< other code moves the cloth
   std::vector<std::optional<ElasticEnergy>> at_rest;  ///< of each sleeping part, once known

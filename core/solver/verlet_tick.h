@@ -76,8 +76,14 @@ void hold_kick(const Tick<Real>& tick, const Kick<Real>& k, const Vec3Array<Real
 template <class Real>
 void keep_held(const Tick<Real>& tick) {
   if (!tick.collision.objects) return;
-  tick.collision.objects->for_each_held(
-      [&tick](Index i) { tick.work.remainder[static_cast<std::size_t>(i)].setZero(); });
+  tick.collision.objects->for_each_held([&tick](Index i) {
+    const auto k = static_cast<std::size_t>(i);
+    tick.work.remainder[k].setZero();
+    for (std::size_t p = 0; p < tick.parts(); ++p) {
+      if (tick.by_rows(p) && tick.part(p).particles.contains(i))
+        tick.grid(p).forget_remainder(i, tick.state.x[k]);
+    }
+  });
 }
 
 inline std::size_t size_of(const IndexRange& range) {

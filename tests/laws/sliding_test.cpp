@@ -100,6 +100,23 @@ TEMPLATE_TEST_CASE("at mu = 0.2 and 0.5 a cloth sticks 1 degree below atan(mu), 
   CHECK((test::centre_of_mass(above) - before)[0] == Approx(2 * acceleration).epsilon(0.01));
 }
 
+TEST_CASE("stiff cloth far from the origin sticks at 0.8 of the threshold, to 0.1 mm in 2 s") {
+  const double far = GENERATE(0.9, 2.9, 5.9);
+  CAPTURE(far);
+  WorldDef def = cloth_on_ground(0.8 * kFriction, kFriction);
+  ClothDef& cloth = def.cloths[0];
+  cloth.rows = cloth.columns = 25;
+  cloth.width = cloth.height = 0.2;
+  cloth.fabric.stretch_warp = cloth.fabric.stretch_weft = 1500;
+  cloth.fabric.areal_density = 0.324;
+  cloth.origin[0] = far;
+  World<float> world(def);
+  test::advance(world, 0.5);
+  const Vec3Array<float> start = world.state().x;
+  test::advance(world, 2);
+  CHECK(largest_move(world, start) < 1e-4);
+}
+
 TEST_CASE("over a flat mesh a cloth slides 1 degree above atan(mu) as on a plane, to 10 %") {
   const double friction = GENERATE(0.0, 0.2, 0.5), side = GENERATE(-1.0, 1.0);
   const double angle = std::atan(friction) + side * std::atan(1.0) / 45;
@@ -164,4 +181,42 @@ TEST_CASE("over another cloth a cloth creeps 1 degree below atan(mu) by less tha
   const double before = upper_cloth(world);
   test::advance(world, 3);
   CHECK(std::abs(upper_cloth(world) - before) < 6e-4);
+}
+
+TEST_CASE(
+    "over another cloth a cloth slides down 30 degrees as on a plane, to 0.5 %, and stays low") {
+  const double friction = GENERATE(0.0, 0.2), turn = GENERATE(0.0, 0.4);
+  const double angle = std::acos(-1.0) / 6, seconds = 0.4;
+  WorldDef def = cloth_on_cloth(angle, friction);
+  def.cloths[0].u = Vec3d(std::cos(turn), 0, std::sin(turn));
+  def.cloths[0].v = Vec3d(-std::sin(turn), 0, std::cos(turn));
+  World<float> world(def);
+  const double before = upper_cloth(world);
+  test::advance(world, seconds);
+  const double acceleration = kGravity * (std::sin(angle) - friction * std::cos(angle));
+  CHECK(upper_cloth(world) - before == Approx(acceleration * seconds * seconds / 2).epsilon(0.005));
+  for (Index i = 0; i < world.model().parts[0].particles.end(); ++i)
+    REQUIRE(world.state().x[static_cast<std::size_t>(i)][1] == Approx(0.004).epsilon(0.1));
+}
+
+TEST_CASE("layers on a pinned cloth hold at 0.8 mu, however dense the upper one is") {
+  const double density = GENERATE(0.2, 1.0, 5.0), friction = 0.4;
+  WorldDef def = cloth_on_cloth(std::atan(0.8 * friction), friction);
+  def.cloths.push_back(def.cloths[0]);
+  ClothDef& top = def.cloths[2];
+  top.name = "top";
+  top.width = top.height = 0.35;
+  top.origin += Vec3d(0.02, 0.004, 0.02);
+  top.fabric.areal_density = density;
+  World<float> world(def);
+  const IndexRange& range = world.model().parts[2].particles;
+  const auto place = [&] {
+    double sum = 0;
+    for (Index i = range.first; i < range.end(); ++i)
+      sum += static_cast<double>(world.state().x[static_cast<std::size_t>(i)][0]);
+    return sum / range.count;
+  };
+  const double before = place();
+  test::advance(world, 2);
+  CHECK(std::abs(place() - before) < 1e-3);
 }
