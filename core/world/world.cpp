@@ -129,9 +129,9 @@ void World<Real>::refuse_too_stiff() const {
     const double longest = solvers_.dashpots.longest_time(model_, p, tick_seconds());
     if (given > longest)
       throw DefinitionError(
-          "fabric.bending_damping", "longer than this mesh and tick allow",
-          "at most " + rounded_text(longest) + " s for " + std::to_string(kMostDashpotStages) +
-              " stages a tick",
+          "fabric.bending_damping", number_text(given),
+          "at most " + rounded_text(longest) + " s on this mesh in this tick, for " +
+              std::to_string(kMostDashpotStages) + " stages",
           "a coarser mesh, a pin whose border is not close beside particles, or a "
           "higher tick_rate allows more");
   }

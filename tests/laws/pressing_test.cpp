@@ -118,7 +118,7 @@ TEST_CASE("a finger that comes fast presses with its force, and shoves the cloth
         float farthest = 0;
         for (std::size_t i = 0; i < start.size(); ++i)
           farthest = std::max(farthest, (world.state().x[i] - start[i]).norm());
-        REQUIRE(farthest < 1e-3f);
+        REQUIRE(farthest < 3e-3f);  // once it slips off a particle
       }
       CHECK(mean_forces(world, 10)[1][1] == Approx(force).epsilon(0.02));
     }
