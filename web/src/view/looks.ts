@@ -139,7 +139,7 @@ export const FINISHES: Record<FabricName, Finish> = {
     period: 0.006,
     relief: 0.5,
     grooves: 0.25,
-    roughness: 0.45,
+    roughness: 0.48,
     back_roughness: 0.5,
     specular: 1,
     sheen: 0.1,
