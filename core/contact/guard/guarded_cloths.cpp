@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/contact/guard/constants.h"
+#include "core/contact/guard/nearer_neighbour.h"
 #include "core/geometry/triangle_sides.h"
 #include "core/instantiate.h"
 
@@ -85,24 +86,6 @@ bool triangle_owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Re
                       [&](const auto& neighbour) { return leads_nearer(neighbour.particle); });
 }
 
-/// Whether the particle of a pair is the nearest point of the surface around it.
-/// @param most  cosine between the ways to a neighbour and to the triangle that does not count [1]
-template <class Real>
-bool particle_owns_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x,
-                           const std::array<Index, 4>& particles, const PairSeparation<Real>& s,
-                           Real most) {
-  const Quad<Real> towards = to_quad<Real>(-s.normal);
-  const auto leads_nearer = [&](const auto& neighbour) {
-    const Index i = neighbour.particle;
-    if (std::find(particles.begin(), particles.end(), i) != particles.end()) return false;
-    const Quad<Real> way = x[at_index(i)] - x[at_index(particles[0])];
-    const Real nearer = dot(towards, way);
-    return nearer > 0 && nearer * nearer > dot(way, way) * most * most;
-  };
-  const auto around = cloths.neighbours.of(at_index(particles[0]));
-  return std::none_of(around.begin(), around.end(), leads_nearer);
-}
-
 }  // namespace
 
 template <class Real>
@@ -166,7 +149,8 @@ bool own_nearest(const GuardedCloths<Real>& cloths, const QuadArray<Real>& x, In
                  bool pushes) {
   const Real most = static_cast<Real>(pushes ? kStillNearest : kLeadsNearer);
   return s.inside || (triangle_owns_nearest(cloths, x, triangle, particles, s) &&
-                      particle_owns_nearest(cloths, x, particles, s, most));
+                      !has_nearer_neighbour(cloths, x, particles[0], particles,
+                                            to_quad<Real>(-s.normal), most));
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(guarded_cloths, cloth_of, seen_from, kept_distance, own_nearest)

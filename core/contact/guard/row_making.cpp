@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "core/contact/guard/constants.h"
+#include "core/contact/guard/nearer_neighbour.h"
 #include "core/contact/parts.h"
 #include "core/instantiate.h"
 
@@ -29,43 +30,26 @@ bool weigh(const std::vector<Real>& inverse_mass, const PairSeparation<Real>& s,
   return mobility > 0;
 }
 
-/// Whether a particle next to an edge of a pair comes nearer to the other edge than that does.
-/// @param end      number of the edge's first end in the pair
-/// @param towards  the other edge, unit
-/// @param most     cosine between both ways that does not count [1]
-template <class Real>
-bool has_nearer(const RowSource<Real>& source, const std::array<Index, 4>& particles,
-                std::size_t end, const Quad<Real>& towards, Real most) {
-  const auto leads_nearer = [&](Index from, Index to) {
-    if (std::find(particles.begin(), particles.end(), to) != particles.end()) return false;
-    const Quad<Real> way = source.x[at_index(to)] - source.x[at_index(from)];
-    const Real nearer = dot(towards, way);
-    return nearer > 0 && nearer * nearer > dot(way, way) * most * most;
-  };
-  for (const Index from : {particles[end], particles[end + 1]}) {
-    for (const auto& neighbour : source.cloths.neighbours.of(at_index(from)))
-      if (leads_nearer(from, neighbour.particle)) return true;
-  }
-  return false;
-}
-
 /// Whether two edges carry each other: they are nearest between their ends and, if they are nearly
 /// parallel, nearer than the surfaces beside them. Such edges that pass each other are nearest
 /// aslant, where edges that cross are so across both.
-/// @param pushes  they push each other already
+/// @param pushes  says whether they push each other already
 template <class Real>
 bool edges_carry(const RowSource<Real>& source, const std::array<Index, 4>& particles,
-                 const PairSeparation<Real>& s, bool pushes) {
+                 const PairSeparation<Real>& s, auto&& pushes) {
   if (!s.inside) return false;
   const auto& x = source.x;
   const Quad<Real> a = x[at_index(particles[1])] - x[at_index(particles[0])],
                    b = x[at_index(particles[3])] - x[at_index(particles[2])];
   const Real ab = dot(a, b), both2 = dot(a, a) * dot(b, b);
   if (ab * ab < both2 * (1 - Real(kParallel * kParallel))) return true;
-  const Real most = static_cast<Real>(pushes ? kStillNearest : kLeadsNearer);
-  const Quad<Real> normal = to_quad(s.normal);
-  return !has_nearer(source, particles, 0, normal * Real(-1), most) &&
-         !has_nearer(source, particles, 2, normal, most);
+  const Real most = static_cast<Real>(pushes() ? kStillNearest : kLeadsNearer);
+  const Quad<Real> back = to_quad(s.normal), there = back * Real(-1);
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (has_nearer_neighbour(source.cloths, x, particles[k], particles, k < 2 ? there : back, most))
+      return false;
+  }
+  return true;
 }
 
 /// Turns one row. What edges push that do not carry each other is left to what is nearer.
@@ -73,7 +57,8 @@ template <class Real>
 void turn(const RowSource<Real>& source, const PairSeparation<Real>& s, GuardRow<Real>& row) {
   if (!(s.gap > 0)) return;
   const Quad<Real> slipped = row.slip + (weighted(row, source.x) - row.apart);
-  if ((kind_of(row) == PairKind::edge_edge && !edges_carry(source, row.particle, s, true)) ||
+  if ((kind_of(row) == PairKind::edge_edge &&
+       !edges_carry(source, row.particle, s, [] { return true; })) ||
       !weigh(source.state.inverse_mass, s, row)) {
     row.push = 0;
     row.slip = {};
@@ -165,10 +150,10 @@ bool make_row(const RowSource<Real>& source, const RowMaking<Real>& making,
               const GuardedPair<Real>& pair, const PairSeparation<Real>& s, GuardRow<Real>& row) {
   const GuardedCloths<Real>& cloths = source.cloths;
   if (s.gap > cloths.thickest * Real(kRowReach) || !(s.gap > 0)) return false;
-  const bool edges = pair.kind == PairKind::edge_edge;
-  const bool pushes = (edges || !s.inside) && has_pushed(making, key_of(pair));
-  if (edges ? !edges_carry(source, pair.particle, s, pushes)
-            : !own_nearest(cloths, source.x, pair.b, pair.particle, s, pushes))
+  const auto pushes = [&] { return has_pushed(making, key_of(pair)); };
+  if (pair.kind == PairKind::edge_edge
+          ? !edges_carry(source, pair.particle, s, pushes)
+          : !s.inside && !own_nearest(cloths, source.x, pair.b, pair.particle, s, pushes()))
     return false;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
