@@ -54,6 +54,17 @@ test('a machine that cannot keep up gets coarser pictures within a second', () =
   assert.ok(0.005 + 0.03 * last * last <= 0.045, 'it is quick enough');
 });
 
+test('a machine that is far too slow gets the coarsest picture after three, but not after a hitch', () => {
+  const quality = new Quality(() => 2);
+  quality.judge(0.5);
+  quality.judge(0.5);
+  assert.equal(quality.pixel_ratio, 2, 'two slow pictures may be a hitch');
+  quality.judge(DISPLAY);
+  const drawn = draw(quality, 5, machine(0.05, 0.25));
+  assert.equal(drawn[2].ratio, 0.5, `${drawn.map(({ ratio }) => ratio)}`);
+  assert.equal(changes(drawn), 1, 'it goes there in one step');
+});
+
 test('the picture does not waver, whatever a machine needs for it', () => {
   let most = 0;
   for (const fixed of [0, 0.004, 0.01, 0.02, 0.03, 0.04, 0.044]) {
