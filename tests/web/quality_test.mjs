@@ -6,6 +6,7 @@ import { import_page_module } from './support/page_module.mjs';
 
 const { Quality } = await import_page_module('view/quality');
 const { sample_of } = await import_page_module('view/samples');
+const { PictureClock } = await import_page_module('view/picture_clock');
 const { Rest } = await import_page_module('view/rest');
 
 const DISPLAY = 1 / 60; // [s]
@@ -63,6 +64,17 @@ test('a machine that is far too slow gets the coarsest picture after three, but 
   const drawn = draw(quality, 5, machine(0.05, 0.25));
   assert.equal(drawn[2].ratio, 0.5, `${drawn.map(({ ratio }) => ratio)}`);
   assert.equal(changes(drawn), 1, 'it goes there in one step');
+});
+
+test('pictures are judged by all the time they take, of which the camera goes on by a tenth of a second', () => {
+  const clock = new PictureClock();
+  const start = performance.now() / 1000;
+  for (const k of [1, 2, 3]) {
+    const elapsed = clock.step(start + 0.5 * k);
+    const { interval } = clock.judge(true, true);
+    assert.ok(elapsed <= 0.1, `${elapsed}`);
+    if (k > 1) assert.ok(Math.abs(interval - 0.5) < 1e-9, `${interval}`);
+  }
 });
 
 test('the picture does not waver, whatever a machine needs for it', () => {

@@ -5,15 +5,15 @@ const LONGEST_STEP = 0.1; // that the camera goes on at once after the page stoo
 /** Times of the display's pictures, of which those are drawn that differ from the last one. */
 export class PictureClock {
   private now = performance.now() / 1000;
-  private elapsed = 0; // since the display's last picture [s]
+  private interval = 0; // since the display's last picture [s]
   private drew = false; // for the display's last picture
   private rest = new Rest();
 
-  /** Begins the display's next picture; returns the time since its last one [s]. @param now [s] */
+  /** Begins the display's next picture; returns the time by which the camera goes on [s]. @param now [s] */
   step(now: number): number {
-    this.elapsed = Math.min(LONGEST_STEP, now - this.now);
+    this.interval = now - this.now;
     this.now = now;
-    return this.elapsed;
+    return Math.min(LONGEST_STEP, this.interval);
   }
 
   /**
@@ -22,7 +22,7 @@ export class PictureClock {
    * @returns whether the picture rests, and the time between two that are drawn in a row [s]
    */
   judge(changed: boolean, ticking: boolean): { still: boolean; interval: number | null } {
-    const interval = changed && this.drew ? this.elapsed : null;
+    const interval = changed && this.drew ? this.interval : null;
     this.drew = changed;
     return { still: this.rest.update(this.now, changed, ticking), interval };
   }
