@@ -190,10 +190,16 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source, std::si
     const Real distance = static_cast<Real>(s.gap);
     const bool responds = !carried && s.inside;
     if (distance > farthest_row(source, feature, responds)) return;
+    const Vec3<Real>& outward = mesh.vertex_normals[v];
     ContactBarrier<Real> barrier;
     barrier.distance = std::max(distance, Real(0));
-    const Vec3<Real> normal =
-        s.gap > kNoDirection ? (-s.normal).template cast<Real>().eval() : mesh.vertex_normals[v];
+    Vec3<Real> normal = s.gap > kNoDirection ? (-s.normal).template cast<Real>().eval() : outward;
+    // A triangle that a corner pierces goes on outward, as an edge does that cuts a ridge.
+    if (mesh.closed && s.inside && normal.dot(outward) < 0 &&
+        still_leaves(cloth_of(source.cloths, t[0]), collider, rows.exits)) {
+      normal = -normal;
+      barrier.distance = -barrier.distance;
+    }
     barrier.normal = frame.world_direction(normal);
     barrier.top = top_of(source.shapes, m, barrier.normal, {pair.feature});
     std::array<Real, 3> weights;
