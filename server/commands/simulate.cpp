@@ -39,7 +39,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Exit code if anything crossed.
+/// Exit code if anything crossed that contact rules out.
 constexpr int kCrossed = 3;
 /// Exit code if a tick exceeded its limit.
 constexpr int kHalted = 4;
@@ -66,9 +66,10 @@ struct Measurement {
   int crossed_ticks = 0, first_crossed = 0;  ///< number of the first one; 0: none
   std::size_t late_crossings = 0;            ///< after the scene's grace time for crossings
   std::size_t broken_promises = 0;           ///< those that its contact rules out
-  Verdict<Real> verdict;                     // of a hard case
-  proto::Guarantee guarantee;                ///< at the end
-  bool halted = false;                       ///< the tick after these was given up
+  std::size_t while_led_out = 0;  ///< the same of cloth that started badly, until it is out
+  Verdict<Real> verdict;          // of a hard case
+  proto::Guarantee guarantee;     ///< at the end
+  bool halted = false;            ///< the tick after these was given up
 };
 
 /// @returns false if the tick exceeded its limit; the state is then unchanged
@@ -105,8 +106,10 @@ std::size_t broken_promises(const World<Real>& world, const WorldCrossings& foun
 }
 
 /// Checks for penetrations and counts crossings.
+/// @param led_out  cloth that started inside objects or through cloth is not out yet
 template <class Real>
-void look(World<Real>& world, bool judged, CrossingCounter<Real>& counter, Measurement<Real>& m) {
+void look(World<Real>& world, bool judged, bool led_out, CrossingCounter<Real>& counter,
+          Measurement<Real>& m) {
   ++m.checks;
   m.deepest = std::max(m.deepest, world.deepest_penetration());
   const WorldCrossings found = judged ? m.verdict.crossing_now : counter.count(world);
@@ -117,7 +120,13 @@ void look(World<Real>& world, bool judged, CrossingCounter<Real>& counter, Measu
   if (m.first_crossed == 0) m.first_crossed = static_cast<int>(world.tick());
   if (world.report().time <= world.def().verdict.clear_after) return;
   m.late_crossings += found.total();
-  m.broken_promises += broken_promises(world, found);
+  (led_out ? m.while_led_out : m.broken_promises) += broken_promises(world, found);
+}
+
+/// Whether cloth that started inside objects or through cloth is not out yet.
+template <class Real>
+bool is_led_out(const GuaranteeWatch<Real>& promise, const World<Real>& world) {
+  return promise.guarantee(world).state == proto::GuaranteeState::bad_start;
 }
 
 /// A tick that is given up ends it, and the series is then not written.
@@ -136,6 +145,7 @@ Measurement<Real> run(World<Real>& world, const SimulateOptions& options, ErrorO
   if (!options.series.empty())
     series.emplace(options.series, world, options.series_every, options.ticks);
   int done = 0;
+  bool led_out = is_led_out(promise, world);
   for (int i = 1; i <= options.ticks; done = i++) {
     m.halted = !measure_tick(world, limit, m);
     if (m.halted) break;
@@ -143,12 +153,17 @@ Measurement<Real> run(World<Real>& world, const SimulateOptions& options, ErrorO
     if (series) series->note_tick(world);
     if (error) error->step();
     if (judged) m.verdict.look(world);
-    if (i % options.check_every == 0 || i == options.ticks) look(world, judged, counter, m);
+    if (i % options.check_every == 0 || i == options.ticks)
+      look(world, judged, led_out, counter, m);
+    led_out = led_out && is_led_out(promise, world);
   }
-  if (m.halted && done % options.check_every != 0) look(world, judged, counter, m);
+  if (m.halted && done % options.check_every != 0) look(world, judged, led_out, counter, m);
   if (series && !m.halted) series->finish();
   if (done > 0) promise.count(world);
   m.guarantee = promise.guarantee(world);
+  // What is never led out is no excuse.
+  if (m.guarantee.state != proto::GuaranteeState::held)
+    m.broken_promises += std::exchange(m.while_led_out, 0);
   std::sort(m.ticks.begin(), m.ticks.end());
   return m;
 }
@@ -254,7 +269,8 @@ Json summary(const SimulateOptions& options, const World<Real>& world, const Mea
         {"cloth_with_object", m.object_crossings},
         {"ticks_looked_at", m.checks},
         {"ticks_with_any", m.crossed_ticks},
-        {"first_tick", m.first_crossed > 0 ? Json(m.first_crossed) : Json()}}},
+        {"first_tick", m.first_crossed > 0 ? Json(m.first_crossed) : Json()},
+        {"while_led_out", m.while_led_out}}},
       {"guarantee",
        {{"state", proto::name_of(m.guarantee.state)},
         {"covers", m.guarantee.covers},
@@ -288,6 +304,7 @@ int warn_of_crossings(const Measurement<Real>& m) {
                "from tick %d on%s\n",
                m.cloth_crossings, m.object_crossings, m.crossed_ticks, m.checks, m.first_crossed,
                m.broken_promises > 0  ? ""
+               : m.while_led_out > 0  ? ", of cloth that started there and was led out"
                : m.late_crossings > 0 ? ", about which its contact promises nothing"
                                       : ", none after the scene's grace time");
   return m.broken_promises > 0 ? kCrossed : 0;

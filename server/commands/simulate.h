@@ -33,8 +33,8 @@ struct SimulateOptions {
 
 /// Runs a scene without a clock and prints a summary.
 /// @return exit code: 3 if anything crossed after the scene's grace time (its verdict's
-///         `clear_after`), 4 if a tick exceeded its limit and was given up; both are reported on
-///         standard error too; else 0
+///         `clear_after`), other than cloth that started so and was led out, 4 if a tick exceeded
+///         its limit and was given up; both are reported on standard error too; else 0
 /// Throws OptionError or DefinitionError if an input is invalid or too costly, OutputError if the
 /// file cannot be written.
 int simulate(const SimulateOptions& options);

@@ -205,7 +205,8 @@ class CommandLine(unittest.TestCase):
         result = json.loads(run("simulate", "--scene", "default", "--ticks", "600", "--json").stdout)
         self.assertLessEqual(result["deepest_penetration"], 0.004)  # the thickness
         self.assertEqual(result["crossings"], {"cloth_with_cloth": 0, "cloth_with_object": 0,
-                                               "ticks_looked_at": 600, "ticks_with_any": 0, "first_tick": None})
+                                               "ticks_looked_at": 600, "ticks_with_any": 0, "first_tick": None,
+                                               "while_led_out": 0})
         self.assertEqual(result["divergences"], 0)
         self.assertGreater(result["stages"]["contact"]["work"], 0)  # it was blown against the model
         self.assertGreater(result["strain"]["largest"], result["strain"]["p99"])
@@ -234,6 +235,12 @@ class CommandLine(unittest.TestCase):
             early = run(*command, "--set", "verdict.clear_after=1")
             self.assertEqual(early.returncode, 0)
             self.assertIn("none after the scene's grace time", early.stderr)
+        out = run("simulate", "--scene", "hard-start-fold", "--set", "verdict.strain=0", "--set", "verdict.clear_after=0",
+                  "--ticks", "240", "--json")
+        told = json.loads(out.stdout)
+        self.assertEqual((out.returncode, told["guarantee"]["state"]), (0, "held"))
+        self.assertEqual(told["crossings"]["while_led_out"], told["crossings"]["cloth_with_cloth"])
+        self.assertIn("of cloth that started there and was led out", out.stderr)
         free = run(*fold, "--set", "verdict.clear_after=0", "--set", "contact.self=none")
         self.assertEqual(free.returncode, 0)
         self.assertIn("about which its contact promises nothing", free.stderr)
