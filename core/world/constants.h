@@ -51,11 +51,10 @@ inline constexpr double kUndampedMargin = 5;
 /// Smaller: gains of energy that the damping does not outweigh.
 inline constexpr double kDampsEnough = 0.01;
 
-/// With the implicit solver, verlet steps the ticks that are violent, in which anything touches or
-/// could touch (see advance_implicit) or in which a pin moves, if its substeps are at least this
-/// long [s]. Larger: more such ticks stay with implicit, which loses waves in them. Smaller: longer
-/// ticks.
-inline constexpr double kShortestForVerlet = 1.0 / 120000;
+/// Least substeps of implicit in a tick in which a pin moves and which verlet cannot step [1].
+/// Larger: longer ticks. Smaller: the pin jumps farther between two of them, and the cloth is
+/// stopped.
+inline constexpr int kFewestDriven = 32;
 
 /// Most times the usual substeps that a run may be repeated with [1]. Larger: rounding in float
 /// exceeds what a finer step gains. Smaller: errors have no reference to be checked against.

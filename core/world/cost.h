@@ -33,7 +33,8 @@ void check_size(const WorldDef& def);
 /// Sweeps over all springs in a substep of the given solver.
 double sweeps_of(const WorldDef& def, SolverKind kind);
 
-/// Throws CostError if the estimate exceeds kMostTickUpdates or kMostUpdatesPerSecond.
+/// Throws CostError if the estimate exceeds kMostSubsteps, kMostTickUpdates or
+/// kMostUpdatesPerSecond.
 /// @param field  named in the error, e.g. "set.wind"
 /// @param value  of that field
 void check_cost(const TickCost& cost, const std::string& field, const std::string& value);

@@ -135,10 +135,15 @@ void World<Real>::refuse_too_stiff() const {
           "a coarser mesh, a pin whose border is not close beside particles, or a "
           "higher tick_rate allows more");
   }
-  if (choose_substeps(solver_of(def_)) <= kMostSubsteps) return;
-  throw DefinitionError("fabric", "too stiff for this mesh and tick",
-                        "at most " + std::to_string(kMostSubsteps) + " substeps a tick",
-                        "lower the stiffness or the resolution, or raise tick_rate");
+  const SolverKind kind = solver_of(def_);
+  if (choose_substeps(kind) <= kMostSubsteps) return;
+  EnvironmentDef vacuum = environment_;
+  vacuum.air_density = 0;
+  const bool by_air = choose_substeps(kind, vacuum) <= kMostSubsteps;
+  const std::string most = std::to_string(kMostSubsteps) + " substeps a tick";
+  throw DefinitionError(by_air ? "environment" : "fabric", "more than " + most, "at most " + most,
+                        by_air ? "take weaker wind, thinner air or heavier cloth"
+                               : "lower the stiffness or the resolution, or raise tick_rate");
 }
 
 template <class Real>

@@ -231,7 +231,11 @@ class World {
 
   /// Estimated cost of a tick without contact, from the present state in this environment; see
   /// check_cost.
-  TickCost cost_in(const EnvironmentDef& environment) const;
+  TickCost cost_in(const EnvironmentDef& environment) const {
+    return cost_of(solver_of(def_), environment);
+  }
+  /// The same if the given solver stepped it.
+  TickCost cost_of(SolverKind kind, const EnvironmentDef& environment) const;
 
   /// As built: the jaws of grippers are its last colliders.
   const WorldDef& def() const { return def_; }

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "core/world/constants.h"
+#include "core/world/implicit_alone.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -131,15 +132,15 @@ void World<Real>::advance_or_recover(int substeps) {
   int without_loss = 0;
   if (kind == SolverKind::implicit) {
     without_loss = choose_substeps(SolverKind::verlet);
-    // Refined runs give the same ticks to verlet, so that they differ by their steps alone.
-    solvers_.implicit.refuses = without_loss <= kMostSubsteps &&
-                                refinement_ * tick_seconds() >= without_loss * kShortestForVerlet;
-    solvers_.implicit.status = ImplicitStatus::done;
     const bool driven = pins_.any_moving();
+    solvers_.implicit.refuses = !steps_implicit_alone(*this);
+    solvers_.implicit.status = ImplicitStatus::done;
     if ((solvers_.touching || driven) && solvers_.implicit.refuses) {
       solvers_.implicit.status = driven ? ImplicitStatus::driven : ImplicitStatus::touching;
       kind = SolverKind::verlet;
       substeps = without_loss;
+    } else if (driven) {
+      substeps = std::max(substeps, refinement_ * kFewestDriven);
     }
   }
   for (int attempt = 0;; ++attempt) {

@@ -99,8 +99,7 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
 }
 
 template <class Real>
-TickCost World<Real>::cost_in(const EnvironmentDef& environment) const {
-  const SolverKind kind = solver_of(def_);
+TickCost World<Real>::cost_of(SolverKind kind, const EnvironmentDef& environment) const {
   TickCost cost;
   cost.particles = static_cast<double>(model_.mass.size());
   cost.substeps = choose_substeps(kind, environment);
@@ -117,7 +116,7 @@ TickCost World<Real>::cost_in(const EnvironmentDef& environment) const {
       const;                                                                                  \
   template StabilityBound World<Real>::stability_bound(const ClothPart<Real>&, SolverKind,    \
                                                        const EnvironmentDef&) const;          \
-  template TickCost World<Real>::cost_in(const EnvironmentDef&) const;
+  template TickCost World<Real>::cost_of(SolverKind, const EnvironmentDef&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

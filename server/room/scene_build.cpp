@@ -6,6 +6,7 @@
 #include "core/error.h"
 #include "core/world/cost.h"
 #include "core/world/effective_moduli.h"
+#include "core/world/implicit_alone.h"
 #include "core/world/mesh_damping.h"
 #include "core/world/object_repair.h"
 #include "core/world/pin_extent.h"
@@ -53,6 +54,8 @@ std::vector<SceneNotice> notices_of(const World<Real>& world,
     notices.push_back({"springs_slack", describe(slack)});
   for (const std::string& softer : describe(effective_moduli(world)))
     notices.push_back({"softer_than_fabric", softer});
+  if (steps_implicit_alone(world))
+    notices.push_back({"implicit_alone", describe_implicit_alone(world)});
   if (const auto pins = coarse_pins(world); !pins.empty())
     notices.push_back({"pins_coarse", describe(pins), false});
   for (const MeshDamping& damping : damping_of_meshes(world))
