@@ -54,6 +54,19 @@ const EVENTS = new Set(['state', 'roster', 'presence', 'pins', 'grabs', 'notice'
 const MEASURED = new Set(['drag', 'pin', 'release']); // commands with a visible effect
 
 /**
+ * JSON would make `null` of a number that is not finite, and the server would take that as absent.
+ * @param {unknown} value
+ * @param {string} path  of it, for the error
+ */
+function requireFinite(value, path) {
+  if (typeof value === 'number' && !Number.isFinite(value))
+    throw new RangeError(`${path} = ${value}: numbers have to be finite`);
+  if (typeof value !== 'object' || value === null) return;
+  for (const [key, inner] of Object.entries(value))
+    requireFinite(inner, Array.isArray(value) ? `${path}[${key}]` : `${path}.${key}`);
+}
+
+/**
  * The conversation with a server: requests and answers, events, the mesh, frames and their acks,
  * clock and latency. `WeftClient` adds the commands.
  * @extends {Emitter<Events>}
@@ -110,21 +123,26 @@ export class Session extends Emitter {
   }
 
   /**
-   * Resolves with the first `welcome`; keeps trying unless `reconnect` is false.
+   * Resolves with the first `welcome`. Rejects with `CallTimeout` if none comes in time, as where there is no such
+   * room; the client then goes on trying until it is closed, unless `reconnect` is false.
+   * @param {Call} [call]
    * @returns {Promise<import('./messages.js').Welcome>}
    */
-  connect() {
+  connect({ timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
     const welcome = new Promise((resolve, reject) => {
       /** @param {() => void} settle */
       const finish = (settle) => {
         for (const stop of stops) stop();
         settle();
       };
+      const expire = () => finish(() => reject(new CallTimeout('connect', timeout)));
+      const timer = timeout <= LONGEST_TIMER ? this.timers.setTimeout(expire, timeout) : null;
       const stops = [
         this.on('welcome', (message) => finish(() => resolve(message))),
         this.on('status', ({ phase, reason, code }) => {
           if (phase === 'closed') finish(() => reject(new ConnectionLost(`${code} ${reason}`)));
         }),
+        () => this.timers.clearTimeout(timer),
       ];
     });
     this.#connection.open();
@@ -168,23 +186,27 @@ export class Session extends Emitter {
 
   /**
    * Sends a command and waits for its answer. It is sent as soon as the server's limit of messages
-   * a second allows; rejects with `CallTimeout` if no answer arrives in time.
+   * a second allows; rejects with `CallTimeout` if no answer arrives in time, and with `RangeError`
+   * if a number is not finite, for which JSON has no word.
    * @template {string} Op
    * @param {Op} op
    * @param {object} [fields]
    * @param {Call} [call]
    * @returns {Promise<import('./messages.js').Answer<Op>>}
    */
-  request(op, fields = {}, { timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
+  async request(op, fields = {}, { timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
+    requireFinite(fields, op);
     return this.#ask({ op, ...fields }, () => ({}), timeout);
   }
 
   /**
-   * Sends a command without waiting for its answer. Without a connection it is dropped.
+   * Sends a command without waiting for its answer. Without a connection it is dropped. Throws
+   * `RangeError` if a number is not finite.
    * @param {string} op
    * @param {object} [fields]
    */
   post(op, fields = {}) {
+    requireFinite(fields, op);
     if (this.connected) this.#send({ op, ...fields });
   }
 

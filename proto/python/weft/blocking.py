@@ -96,7 +96,8 @@ class SyncClient(BlockingCommands):
                 return
 
     def on(self, name: str, listener: Callable[[Any], None]) -> Callable[[], None]:
-        """Calls `listener`, in the client's thread, with each message of this name."""
+        """Calls `listener` with each message of this name, in the client's thread: there the client's own calls,
+        which would wait for answers that only this thread can read, raise RuntimeError."""
         return self._client.on(name, listener)
 
     # --- what the server has told, each None before the first ---

@@ -38,6 +38,10 @@ class Runner:
             self._stop()
 
     def _run(self, coroutine: Coroutine[Any, Any, Result]) -> Result:
+        if threading.current_thread() is self._thread:
+            coroutine.close()
+            raise RuntimeError("a listener cannot call the client, whose answers come in its own thread; "
+                               "let it put what it hears into a queue.Queue for another thread")
         if self._loop.is_closed():
             coroutine.close()
             raise ConnectionLost(1000, "this client was closed")

@@ -553,6 +553,30 @@ test('close ends for good, and connect rejects when it may not try again', async
   await assert.rejects(connected, ConnectionLost);
 });
 
+test('connect is given up in time where there is no such room or no server, and goes on trying', async () => {
+  const { FakeSocket, sockets } = fakeSockets();
+  const timers = new FakeTimers();
+  const client = new WeftClient('ws://host:1/ws/nope', { WebSocket: FakeSocket, timers, timeout: 2000 });
+  const refused = assert.rejects(client.connect(), CallTimeout);
+  sockets[0].lose(1006);
+  await timers.pass(2001);
+  await refused;
+  await timers.pass(10000);
+  sockets.at(-1).open();
+  sockets.at(-1).say(welcome);
+  assert.equal(client.connected, true);
+  client.close();
+});
+
+test('a number that is not finite is refused by its name, whatever sends it, and nothing is sent', async () => {
+  const { client, socket } = await join();
+  const sent = socket.sent.length;
+  await assert.rejects(client.set({ drag: NaN }), { name: 'RangeError', message: /set\.drag = NaN/ });
+  await assert.rejects(client.load({ cloths: [{ width: Infinity }] }), /cloths\[0\]\.width = Infinity/);
+  assert.throws(() => client.post('move', { target: [0, -Infinity, 0] }), /move\.target\[1\]/);
+  assert.equal(socket.sent.length, sent);
+});
+
 test('nothing is sent on a socket that the server closes, of which a browser would complain', async () => {
   const { client, socket } = await join();
   socket.readyState = 1;

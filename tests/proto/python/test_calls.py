@@ -14,7 +14,7 @@ from unittest import mock
 import golden
 import websockets
 import weft
-from played_server import GRID, WELCOME, PlayedServer
+from played_server import GRID, WELCOME, PlayedServer, example
 
 
 class CallsTest(unittest.IsolatedAsyncioTestCase):
@@ -174,6 +174,27 @@ class ClosingTest(unittest.IsolatedAsyncioTestCase):
         await client.close()
         self.assertTrue(hand._repeater.done())
         self.assertFalse([task for task in asyncio.all_tasks() - before if "_repeat" in str(task)])
+
+    async def test_a_listener_that_calls_its_blocking_client_is_told_and_the_client_lives_on(self):
+        raised = []
+
+        def use():
+            with weft.open(self.server.url) as client:
+                def listen(_):
+                    try:
+                        client.pause(timeout=0.2)
+                    except RuntimeError as error:
+                        raised.append(error)
+
+                client.on("state", listen)
+                client.reset(timeout=5)
+                while not raised:
+                    time.sleep(0.01)
+                client.pause(timeout=5)
+
+        self.server.answers = {"reset": [{}, example("state")]}
+        await asyncio.wait_for(asyncio.to_thread(use), 20)
+        self.assertIn("listener", str(raised[0]))
 
     async def test_a_blocking_client_with_a_hand_that_holds_closes_without_a_word(self):
         def script():

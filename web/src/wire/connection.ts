@@ -40,7 +40,7 @@ export function connect_client(name: string): WeftClient {
   document.addEventListener('visibilitychange', look);
   client.wantedView = { codec: 'packed', error: SHOWN_ERROR, ...(document.hidden ? { hz: 0 } : {}) };
   window.addEventListener('pagehide', () => client.close());
-  window.addEventListener('pageshow', ({ persisted }) => persisted && void client.connect());
+  window.addEventListener('pageshow', ({ persisted }) => persisted && void client.connect().catch(() => {}));
   // Heard before all others, which so know no other names.
   client.on('roster', ({ viewers }) => {
     for (const viewer of viewers) viewer.name = shown_name(viewer);
