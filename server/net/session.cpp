@@ -71,7 +71,6 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void join(const Grant& grant);
   void await_token();
   void on_first(std::string_view text);
-  void refuse_entry(const std::optional<proto::Id>& id, const char* why);
   void read();
   void on_message();
   void on_text(std::string_view text);
@@ -175,18 +174,17 @@ void Session::on_first(std::string_view text) {
     join(*grant);
     return put(*request);
   }
-  const std::optional<proto::Id> id = request ? request->id : request.error().id;
+  const proto::Error refusal =
+      request ? unknown_token(true, proto::name_of(request->command), request->id)
+              : unknown_token(true, request.error().command, request.error().id);
   const char* const why = hello && hello->token ? "this token is not known" : "a token is needed";
   pauses_ = true;
   watch_.expires_after(duration_of(kWrongTokenSeconds));
-  watch_.async_wait([self = shared_from_this(), id, why](error_code error) {
-    if (!error) self->refuse_entry(id, why);
+  watch_.async_wait([self = shared_from_this(), refusal, why](error_code error) {
+    if (error) return;
+    self->refuse(refusal);
+    self->close_by_policy(kCloseToken, why);
   });
-}
-
-void Session::refuse_entry(const std::optional<proto::Id>& id, const char* why) {
-  refuse(unknown_token(true, id));
-  close_by_policy(kCloseToken, why);
 }
 
 void Session::read() {
@@ -247,7 +245,7 @@ void Session::on_hello(proto::Request request) {
   if (const auto token = std::exchange(hello.token, std::nullopt)) {
     const auto grant = context_.tokens.find(*token, room_->name());
     if (!grant && context_.tokens.required()) {
-      refuse(unknown_token(false, request.id));
+      refuse(unknown_token(false, proto::Hello::kOp, request.id));
       return note();
     }
     if (grant) room_->put({viewer_, number_, *grant});

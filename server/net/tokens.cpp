@@ -146,14 +146,14 @@ void Tokens::forget(std::string_view room) {
   std::erase_if(entries_, [room](const Entry& entry) { return entry.grant.room == room; });
 }
 
-proto::Error unknown_token(bool entry, const std::optional<proto::Id>& id) {
+proto::Error unknown_token(bool entry, std::string command, const std::optional<proto::Id>& id) {
   proto::Error error = proto::make_error(
       proto::ErrorCode::not_allowed,
       entry ? "the first message has to be hello with a token that this server knows"
             : "this server does not know the token",
       "open the whole link that you were given, with what follows #token=");
   error.field = "token";
-  error.command = proto::Hello::kOp;
+  error.command = std::move(command);
   error.id = id;
   return error;
 }

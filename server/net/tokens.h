@@ -49,8 +49,9 @@ class Tokens {
 };
 
 /// Refuses a token, without repeating it.
-/// @param entry  of a viewer that is not let in; otherwise one that is there
-/// @param id     of its message
-proto::Error unknown_token(bool entry, const std::optional<proto::Id>& id);
+/// @param entry    of a viewer that is not let in; otherwise one that is there
+/// @param command  of its message; empty: none that is known
+/// @param id       of its message
+proto::Error unknown_token(bool entry, std::string command, const std::optional<proto::Id>& id);
 
 }  // namespace weft::server

@@ -96,13 +96,24 @@ std::optional<proto::Error> check_free(const Holds& holds, const ServedWorld& wo
   return std::nullopt;
 }
 
-std::optional<proto::Error> check_width(const ServedWorld& world, Index particle, double radius) {
+std::size_t pinned_particles(const ServedWorld& world, const Holds& holds, ViewerId viewer) {
+  std::size_t count = 0;
+  for (const Pin& pin : world.pins().list) {
+    if (holds.owner(pin.id) == viewer) count += pin.particles.size();
+  }
+  return count;
+}
+
+std::optional<proto::Error> check_width(const ServedWorld& world, Index particle, double radius,
+                                        std::size_t already) {
   const std::size_t count = world.model().mass.size();
   const std::size_t most = std::max(kNarrowHold, count / kHoldsBeside);
-  if (count <= most || particles_in_disc(world.model(), particle, radius).size() <= most)
+  if (count <= most || already + particles_in_disc(world.model(), particle, radius).size() <= most)
     return std::nullopt;
   proto::Error error = proto::make_error(
-      ErrorCode::held, "a hand so wide leaves others nothing to hold",
+      ErrorCode::held,
+      already > 0 ? "with so many pins a viewer leaves others nothing to hold"
+                  : "a hold so wide leaves others nothing to hold",
       "take less: of " + std::to_string(count) + " particles at most " + std::to_string(most));
   error.field = "radius";
   error.value = proto::number_text(radius);

@@ -58,9 +58,13 @@ class Holds {
 /// Why a viewer may not begin a drag of this number; nothing if it may.
 std::optional<proto::Error> check_new_hand(const Holds& holds, proto::ViewerId viewer,
                                            std::uint32_t drag, const proto::ServerLimits& limits);
+/// Particles in all pins of a viewer.
+std::size_t pinned_particles(const ServedWorld& world, const Holds& holds, proto::ViewerId viewer);
 /// Why a viewer that shares the cloth may not hold so much of it at once that others find nothing
 /// to hold.
-std::optional<proto::Error> check_width(const ServedWorld& world, Index particle, double radius);
+/// @param already  particles that it has pinned, if it pins
+std::optional<proto::Error> check_width(const ServedWorld& world, Index particle, double radius,
+                                        std::size_t already);
 /// Why a viewer may not take hold of a particle: another viewer's hand has it.
 std::optional<proto::Error> check_free(const Holds& holds, const ServedWorld& world,
                                        proto::ViewerId viewer, Index particle);

@@ -217,6 +217,8 @@ class Room {
   bool only_looks(const Viewer& viewer) const;
   void let_go_forbidden(proto::ViewerId viewer);
   std::optional<proto::Error> check_owner(proto::ViewerId viewer, PinId pin) const;
+  std::optional<proto::Error> check_shared_hold(proto::ViewerId viewer, Index particle,
+                                                double radius, std::size_t pinned) const;
   std::optional<proto::Error> set_hand(proto::ViewerId by, proto::ViewerId viewer, HandRight right,
                                        bool set);
   std::vector<proto::ViewerInfo> roster() const;

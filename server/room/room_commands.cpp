@@ -84,18 +84,25 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::DragStart& command) {
   const auto point = resolve_hold(*world_, command.hold);
   if (!point) return point.error();
   const GrabDef def = grab_def(*world_, command, *point);
-  const Viewer& self = viewers_.at(viewer);
-  const Index particle = nearest_corner(*world_, *point);
-  // An operator by its token takes hold beside the hands of others.
-  auto error = leads(self) ? std::nullopt : check_free(holds_, *world_, viewer, particle);
-  const bool shares = self.info.role == proto::Role::viewer && viewers() > 1;
-  if (!error && shares) error = check_width(*world_, particle, def.radius);
-  if (error) return *std::move(error);
+  if (auto error = check_shared_hold(viewer, nearest_corner(*world_, *point), def.radius, 0))
+    return *std::move(error);
   const GrabId grab = world_->grab(def);
   holds_.add({grab, viewer, command.drag, clock_()});
   change(&News::grabs);
   return proto::Reply(
       proto::DragReply{world_->tick(), command.drag, grab, to_wire(def.target), {}});
+}
+
+/// Why a viewer may not hold so much there; nothing if it may.
+/// @param pinned  particles that it has pinned already, if it pins
+std::optional<proto::Error> Room::check_shared_hold(ViewerId viewer, Index particle, double radius,
+                                                    std::size_t pinned) const {
+  const Viewer& self = viewers_.at(viewer);
+  // An operator by its token takes hold beside the hands of others.
+  auto error = leads(self) ? std::nullopt : check_free(holds_, *world_, viewer, particle);
+  const bool shares = self.info.role == proto::Role::viewer && viewers() > 1;
+  if (!error && shares) error = check_width(*world_, particle, radius, pinned);
+  return error;
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::DragMove& command) {
@@ -138,6 +145,9 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Pin& command) {
   if (world_->pins().list.size() >= options_.limits.pins)
     return too_many("pins", options_.limits.pins);
   const Index particle = nearest_corner(*world_, *point);
+  const std::size_t pinned = pinned_particles(*world_, holds_, viewer);
+  if (auto error = check_shared_hold(viewer, particle, command.radius, pinned))
+    return *std::move(error);
   const PinId pin = world_->pin({particle, command.radius, {}});
   holds_.own(pin, viewer);
   change(&News::pins);
@@ -205,8 +215,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Resume&) {
 }
 
 Room::Outcome Room::apply(ViewerId, const proto::Step& command) {
-  if (!paused()) return not_paused();
   if (order_.advance) return advancing_error();
+  if (!paused()) return not_paused();
   time_.add_steps(command.n, clock_());
   return proto::Reply(proto::StepReply{world_->tick(), world_->tick() + time_.steps_left()});
 }
@@ -308,8 +318,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Gripper& command) {
 }
 
 Room::Outcome Room::apply(ViewerId viewer, const proto::Advance& command) {
-  if (!paused()) return not_paused();
   if (order_.advance) return advancing_error();
+  if (!paused()) return not_paused();
   if (time_.steps_left() > 0)
     return make_error(ErrorCode::busy, "a step is still running", "wait for its end or send pause");
   Viewer& caller = viewers_.at(viewer);

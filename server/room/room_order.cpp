@@ -136,7 +136,7 @@ void Room::note_halt() {
   spdlog::warn("scene {}: {}", world_->def().name, what);
   metrics_.count_halt();
   notify(proto::NoticeLevel::warning, "halted",
-         what + "; the room is paused. Let go, reset or load, or resume to try again");
+         what + "; the room is paused. Let go, take back what was set last, reset or load, or resume to try again");
   if (order_.advance) end_advance(proto::ErrorCode::halted, what, "reset, or take a lighter scene");
 }
 

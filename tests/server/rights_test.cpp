@@ -385,4 +385,34 @@ TEST_CASE("a viewer cannot hold so much that others find nothing; an operator ho
       "result");
 }
 
+TEST_CASE("the pins of a viewer together leave others three quarters, and what others hold") {
+  TestRoom t(true, {{"cloth.rows", "20"}, {"cloth.columns", "20"}});
+  const Grant leads{Role::operator_, HandRight::by_policy, "", true};
+  t.room->take({1, 0, Join{false, leads}});
+  for (const proto::ViewerId viewer : {2U, 3U})
+    t.room->take({viewer, 0, Join{false, Grant{Role::viewer, HandRight::by_policy, "", true}}});
+  const std::size_t pins = t.room->world().pins().list.size();
+  const auto wide = t.say(2, R"({"op":"pin","id":2,"particle":210,"radius":100})");
+  CHECK(wide["code"] == "held");
+  CHECK(wide["field"] == "radius");
+  CHECK(t.room->world().pins().list.size() == pins);
+  // Each disc has some 70 of the 400 particles: the second one is too much, of another viewer not.
+  const double radius = 4.7 * t.room->world().def().cloths[0].width / 19;
+  const auto pin = [&](int viewer, int particle) {
+    const nlohmann::json text = {
+        {"op", "pin"}, {"id", 5}, {"particle", particle}, {"radius", radius}};
+    return t.say(static_cast<proto::ViewerId>(viewer), text.dump());
+  };
+  CHECK(pin(2, 105)["op"] == "result");
+  CHECK(pin(2, 294)["code"] == "held");
+  CHECK(pin(3, 294)["op"] == "result");
+  // What another holds it may not pin; an operator by its token may both.
+  CHECK(t.say(2, R"({"op":"drag","phase":"start","id":7,"drag":0,"particle":210})")["op"] ==
+        "result");
+  const char* const held = R"({"op":"pin","id":8,"particle":210})";
+  CHECK(t.say(3, held)["code"] == "held");
+  CHECK(t.say(1, held)["op"] == "result");
+  CHECK(t.say(1, R"({"op":"pin","id":9,"particle":210,"radius":100})")["op"] == "result");
+}
+
 }  // namespace weft::server

@@ -143,7 +143,8 @@ class WithTokens(SocketTest):
                 self.assertEqual([m["op"] for m in viewer.texts], ["error"])
                 error = viewer.texts[0]
                 self.assertEqual((error["code"], error["field"]), ("not_allowed", "token"))
-                self.assertEqual(error.get("id"), None if first == "nonsense" else 1)
+                said = {} if first == "nonsense" else json.loads(first)
+                self.assertEqual((error.get("id"), error.get("command")), (said.get("id"), said.get("op")))
                 self.assertNotIn(LOOKER, json.dumps(error))
                 self.assertEqual((viewer.frames, viewer.binaries), ([], []))
         self.assertGreaterEqual(loop.time() - began, 0.5, "guessing costs time")
