@@ -1,3 +1,5 @@
+// Tells which worlds of the solver `implicit` verlet cannot help.
+
 #include "core/world/implicit_alone.h"
 
 #include <algorithm>

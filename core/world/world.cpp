@@ -121,31 +121,6 @@ void World<Real>::build_contact() {
   if (has_guard(def_)) contact_.guard.emplace(model_, runtime_.executor);
 }
 
-/// Throws DefinitionError if a tick would take too many substeps, or stages of solved dashpots.
-template <class Real>
-void World<Real>::refuse_too_stiff() const {
-  for (std::size_t p = 0; p < model_.parts.size(); ++p) {
-    const double given = static_cast<double>(model_.parts[p].bending_time);
-    const double longest = solvers_.dashpots.longest_time(model_, p, tick_seconds());
-    if (given > longest)
-      throw DefinitionError(
-          "fabric.bending_damping", number_text(given),
-          "at most " + rounded_text(longest) + " s on this mesh in this tick, for " +
-              std::to_string(kMostDashpotStages) + " stages",
-          "a coarser mesh, a pin whose border is not close beside particles, or a "
-          "higher tick_rate allows more");
-  }
-  const SolverKind kind = solver_of(def_);
-  if (choose_substeps(kind) <= kMostSubsteps) return;
-  EnvironmentDef vacuum = environment_;
-  vacuum.air_density = 0;
-  const bool by_air = choose_substeps(kind, vacuum) <= kMostSubsteps;
-  const std::string most = std::to_string(kMostSubsteps) + " substeps a tick";
-  throw DefinitionError(by_air ? "environment" : "fabric", "more than " + most, "at most " + most,
-                        by_air ? "take weaker wind, thinner air or heavier cloth"
-                               : "lower the stiffness or the resolution, or raise tick_rate");
-}
-
 template <class Real>
 void World<Real>::reset() {
   state_ = state_at(def_.start, model_);

@@ -229,12 +229,9 @@ class World {
   std::vector<std::string> debug_tree_names();
   int debug_tree_levels(const std::string& tree);
 
-  /// Estimated cost of a tick without contact, from the present state in this environment; see
-  /// check_cost.
-  TickCost cost_in(const EnvironmentDef& environment) const {
-    return cost_of(solver_of(def_), environment);
-  }
-  /// The same if the given solver stepped it.
+  /// Estimated cost of a tick without contact, from the present state in this environment, by its
+  /// own solver or by a given one; see check_cost.
+  TickCost cost_in(const EnvironmentDef& environment) const;
   TickCost cost_of(SolverKind kind, const EnvironmentDef& environment) const;
 
   /// As built: the jaws of grippers are its last colliders.

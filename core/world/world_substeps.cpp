@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 
 #include "core/cloth/membrane.h"
 #include "core/forces/air/air.h"
@@ -98,6 +99,36 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
   return bound;
 }
 
+/// Throws DefinitionError if a tick would take too many substeps, or stages of solved dashpots.
+template <class Real>
+void World<Real>::refuse_too_stiff() const {
+  for (std::size_t p = 0; p < model_.parts.size(); ++p) {
+    const double given = static_cast<double>(model_.parts[p].bending_time);
+    const double longest = solvers_.dashpots.longest_time(model_, p, tick_seconds());
+    if (given > longest)
+      throw DefinitionError(
+          "fabric.bending_damping", number_text(given),
+          "at most " + rounded_text(longest) + " s on this mesh in this tick, for " +
+              std::to_string(kMostDashpotStages) + " stages",
+          "a coarser mesh, a pin whose border is not close beside particles, or a "
+          "higher tick_rate allows more");
+  }
+  const SolverKind kind = solver_of(def_);
+  if (choose_substeps(kind) <= kMostSubsteps) return;
+  EnvironmentDef vacuum = environment_;
+  vacuum.air_density = 0;
+  const bool by_air = choose_substeps(kind, vacuum) <= kMostSubsteps;
+  const std::string most = std::to_string(kMostSubsteps) + " substeps a tick";
+  throw DefinitionError(by_air ? "environment" : "fabric", "more than " + most, "at most " + most,
+                        by_air ? "take weaker wind, thinner air or heavier cloth"
+                               : "lower the stiffness or the resolution, or raise tick_rate");
+}
+
+template <class Real>
+TickCost World<Real>::cost_in(const EnvironmentDef& environment) const {
+  return cost_of(solver_of(def_), environment);
+}
+
 template <class Real>
 TickCost World<Real>::cost_of(SolverKind kind, const EnvironmentDef& environment) const {
   TickCost cost;
@@ -112,10 +143,12 @@ TickCost World<Real>::cost_of(SolverKind kind, const EnvironmentDef& environment
 #define WEFT_INSTANTIATE(Real)                                                                \
   template int World<Real>::choose_substeps(SolverKind, const EnvironmentDef&) const;         \
   template void World<Real>::refine_substeps(int);                                            \
+  template void World<Real>::refuse_too_stiff() const;                                        \
   template long World<Real>::substeps_for_hands(SolverKind, const EnvironmentDef&, long, int) \
       const;                                                                                  \
   template StabilityBound World<Real>::stability_bound(const ClothPart<Real>&, SolverKind,    \
                                                        const EnvironmentDef&) const;          \
+  template TickCost World<Real>::cost_in(const EnvironmentDef&) const;                        \
   template TickCost World<Real>::cost_of(SolverKind, const EnvironmentDef&) const;
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

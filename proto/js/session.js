@@ -3,10 +3,12 @@ import { decodeBinary, encodeAck, ProtocolError } from './codec.js';
 import { Connection, SECOND_LOOK, systemTimers } from './connection.js';
 import { Emitter } from './emitter.js';
 import { CallTimeout, CommandError, ConnectionLost } from './errors.js';
+import { requireFinite } from './finite.js';
 import { FrameReader, KeyWish, LiveFrames } from './frames.js';
 import { fetchMesh, matchMesh } from './mesh.js';
 import { Pace } from './pace.js';
 import { ClockEstimate, LatencyMeter } from './timing.js';
+import { firstWelcome, LONGEST_TIMER } from './welcome.js';
 
 /** @typedef {import('./mesh.js').Mesh} Mesh */
 
@@ -47,24 +49,10 @@ const PING_INTERVAL = 2000; // [ms]
 const FIRST_PINGS = 5; // sent in quick succession, for a good clock from the start
 const FIRST_PING_INTERVAL = 200; // [ms]
 const CALL_TIMEOUT = 30000; // for an answer [ms]
-const LONGEST_TIMER = 2 ** 31 - 1; // the most that timers take [ms]
 const SILENCE_LIMIT = 10000; // silence after which the connection counts as dead [ms]
 const FRAME = 1; // the type of a binary message
 const EVENTS = new Set(['state', 'roster', 'presence', 'pins', 'grabs', 'notice', 'bye']);
 const MEASURED = new Set(['drag', 'pin', 'release']); // commands with a visible effect
-
-/**
- * JSON would make `null` of a number that is not finite, and the server would take that as absent.
- * @param {unknown} value
- * @param {string} path  of it, for the error
- */
-function requireFinite(value, path) {
-  if (typeof value === 'number' && !Number.isFinite(value))
-    throw new RangeError(`${path} = ${value}: numbers have to be finite`);
-  if (typeof value !== 'object' || value === null) return;
-  for (const [key, inner] of Object.entries(value))
-    requireFinite(inner, Array.isArray(value) ? `${path}[${key}]` : `${path}.${key}`);
-}
 
 /**
  * The conversation with a server: requests and answers, events, the mesh, frames and their acks,
@@ -129,22 +117,7 @@ export class Session extends Emitter {
    * @returns {Promise<import('./messages.js').Welcome>}
    */
   connect({ timeout = this.options.timeout ?? CALL_TIMEOUT } = {}) {
-    const welcome = new Promise((resolve, reject) => {
-      /** @param {() => void} settle */
-      const finish = (settle) => {
-        for (const stop of stops) stop();
-        settle();
-      };
-      const expire = () => finish(() => reject(new CallTimeout('connect', timeout)));
-      const timer = timeout <= LONGEST_TIMER ? this.timers.setTimeout(expire, timeout) : null;
-      const stops = [
-        this.on('welcome', (message) => finish(() => resolve(message))),
-        this.on('status', ({ phase, reason, code }) => {
-          if (phase === 'closed') finish(() => reject(new ConnectionLost(`${code} ${reason}`)));
-        }),
-        () => this.timers.clearTimeout(timer),
-      ];
-    });
+    const welcome = firstWelcome(this, timeout);
     this.#connection.open();
     return welcome;
   }

@@ -21,6 +21,7 @@
 #include "core/world/world.h"
 #include "server/clock.h"
 #include "server/commands/error_of_run.h"
+#include "server/commands/measurement.h"
 #include "server/commands/series.h"
 #include "server/commands/start_file.h"
 #include "server/commands/table.h"
@@ -43,85 +44,6 @@ using Json = nlohmann::ordered_json;
 constexpr int kCrossed = 3;
 /// Exit code if a tick exceeded its limit.
 constexpr int kHalted = 4;
-
-double cpu_seconds() {
-  timespec now{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + static_cast<double>(now.tv_nsec) * 1e-9;
-}
-
-template <class Real>
-struct Measurement {
-  double cpu = 0, wall = 0;   ///< of the steps alone [s]
-  std::vector<double> ticks;  ///< [s], sorted
-  Profile stages;             ///< summed
-  double deepest = 0;         ///< [m]
-  int checks = 0;             ///< ticks checked for penetrations and crossings
-  int divergences = 0;
-  int least_substeps = 0, most_substeps = 0;
-  double largest_strain = 0;  ///< over the whole run
-  std::size_t cloth_crossings =
-      0;  ///< of the cloths with themselves and each other, over all checks
-  std::size_t object_crossings = 0;          ///< of cloths with objects, over all checks
-  int crossed_ticks = 0, first_crossed = 0;  ///< number of the first one; 0: none
-  std::size_t late_crossings = 0;            ///< after the scene's grace time for crossings
-  std::size_t broken_promises = 0;           ///< those that its contact rules out
-  std::size_t while_led_out = 0;  ///< the same of cloth that started badly, until it is out
-  Verdict<Real> verdict;          // of a hard case
-  proto::Guarantee guarantee;     ///< at the end
-  bool halted = false;            ///< the tick after these was given up
-};
-
-/// @returns false if the tick exceeded its limit; the state is then unchanged
-template <class Real>
-bool measure_tick(World<Real>& world, WorkLimit& limit, Measurement<Real>& m) {
-  const double cpu = cpu_seconds(), wall = process_seconds();
-  const TickReport& report = [&]() -> const TickReport& {
-    const WorkLimit::Scope scope(limit);
-    return world.step();
-  }();
-  if (report.halted) return false;
-  const double seconds = process_seconds() - wall;
-  m.cpu += cpu_seconds() - cpu;
-  m.wall += seconds;
-  m.ticks.push_back(seconds);
-  for (std::size_t i = 0; i < kStageCount; ++i) {
-    m.stages.stages[i].seconds += report.profile.stages[i].seconds;
-    m.stages.stages[i].work += report.profile.stages[i].work;
-  }
-  m.divergences += report.divergence ? 1 : 0;
-  m.least_substeps =
-      m.least_substeps == 0 ? report.substeps : std::min(m.least_substeps, report.substeps);
-  m.most_substeps = std::max(m.most_substeps, report.substeps);
-  m.largest_strain = std::max(m.largest_strain, report.largest_strain);
-  return true;
-}
-
-/// Crossings that break the scene's promise: contact of the seed promises nothing, and without
-/// self-contact cloths may pass through each other.
-template <class Real>
-std::size_t broken_promises(const World<Real>& world, const WorldCrossings& found) {
-  if (contact_of(world.def()) != ContactModel::certified) return 0;
-  return found.objects.all() + (has_guard(world.def()) ? found.cloths.all() : 0);
-}
-
-/// Checks for penetrations and counts crossings.
-/// @param led_out  cloth that started inside objects or through cloth is not out yet
-template <class Real>
-void look(World<Real>& world, bool judged, bool led_out, CrossingCounter<Real>& counter,
-          Measurement<Real>& m) {
-  ++m.checks;
-  m.deepest = std::max(m.deepest, world.deepest_penetration());
-  const WorldCrossings found = judged ? m.verdict.crossing_now : counter.count(world);
-  if (found.total() == 0) return;
-  m.cloth_crossings += found.cloths.proper + found.cloths.touching;
-  m.object_crossings += found.objects.proper + found.objects.touching;
-  ++m.crossed_ticks;
-  if (m.first_crossed == 0) m.first_crossed = static_cast<int>(world.tick());
-  if (world.report().time <= world.def().verdict.clear_after) return;
-  m.late_crossings += found.total();
-  (led_out ? m.while_led_out : m.broken_promises) += broken_promises(world, found);
-}
 
 /// Whether cloth that started inside objects or through cloth is not out yet.
 template <class Real>
