@@ -269,9 +269,9 @@ void ClothGuard<Real>::collect(const ClothState<Real>& state, Real dt, Profile& 
     note_touches(pairs_, step_.from, tangled_);
     paths_.horizon = std::min(paths_.horizon, std::max(static_cast<Real>(kLookAgain), dt));
   }
-  pairs_.list_all(step_.from.size());
+  pairs_.list_all(step_.from.size(), executor_);
   anchor_anew(pairs_, step_, regions_);
-  share_all_gaps(pairs_, step_, regions_);
+  share_all_gaps(pairs_, step_, executor_, regions_);
   paths_.elapsed = dt;
   paths_.collected = true;
   slack_.left = 0;  // was known from other paths

@@ -48,6 +48,10 @@ inline constexpr std::size_t kManyStrays = 24;
 
 // Parts of work: so small that they occupy the threads, and large enough to pay for waking them.
 
+/// Parts of a pass over all pairs that keeps a number for each particle, at most, and pairs of one
+/// at least. More parts: more numbers to merge. Smaller parts: threads cost more than they save.
+inline constexpr std::size_t kMostPairParts = 4, kListedAtLeast = 4096;
+
 /// Patches tested and fitted, particles anchored, pairs examined, particles copied by one part at
 /// least. Larger: fewer threads have work. Smaller: threads cost more than they save.
 inline constexpr std::size_t kPatchesAtLeast = 128, kFitsAtLeast = 128, kAnchoredAtLeast = 8,

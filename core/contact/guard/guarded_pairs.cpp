@@ -22,31 +22,38 @@ void GuardedPairs<Real>::drop_all() {
   open = 0;
 }
 
+/// Each part counts its pairs of each particle; so the parts know where to put them.
 template <class Real>
-void GuardedPairs<Real>::list_all(std::size_t n) {
-  begin.assign(n + 1, 0);
-  for_pairs_from(*this, 0, [&](const GuardedPair<Real>& pair) {
-    for (const Index i : pair.particle) ++begin[at_index(i) + 1];
+void GuardedPairs<Real>::list_all(std::size_t n, Executor* executor) {
+  const std::size_t parts = parts_of_pairs(all.size());
+  places.resize(std::max(places.size(), parts));
+  const auto visit = [&](std::size_t first, std::size_t last, auto&& note) {
+    for (std::size_t k = first; k < last; ++k) {
+      if (all[k].open) continue;
+      for (const Index i : all[k].particle) note(at_index(i), static_cast<Index>(k));
+    }
+  };
+  run_parts(executor, all.size(), parts, [&](std::size_t p, std::size_t first, std::size_t last) {
+    places[p].assign(n, 0);
+    visit(first, last, [&count = places[p]](std::size_t i, Index) { ++count[i]; });
   });
-  active.clear();
-  for (std::size_t i = 0; i < n; ++i) {
-    if (begin[i + 1] > 0) active.push_back(static_cast<Index>(i));
-    begin[i + 1] += begin[i];
-  }
-  of.resize(at_index(begin[n]));
-  for (std::size_t k = all.size(); k-- > 0;) {
-    if (all[k].open) continue;
-    // Filled from the back of each particle's list, whose begin then stands where it shall.
-    for (const Index i : all[k].particle)
-      of[at_index(--begin[at_index(i) + 1])] = static_cast<Index>(k);
-  }
+  begin.resize(n + 1);
   end.resize(n);
-  for (std::size_t i = 0; i < n; ++i) begin[i] = begin[i + 1];
-  begin[n] = static_cast<Index>(of.size());
+  active.clear();
+  Index total = 0;
   for (std::size_t i = 0; i < n; ++i) {
-    end[i] = begin[i + 1];
-    is_active[i] = end[i] > begin[i] ? 1 : 0;
+    begin[i] = total;
+    for (std::size_t p = 0; p < parts; ++p) total += std::exchange(places[p][i], total);
+    end[i] = total;
+    is_active[i] = total > begin[i] ? 1 : 0;
+    if (is_active[i]) active.push_back(static_cast<Index>(i));
   }
+  begin[n] = total;
+  of.resize(at_index(total));
+  run_parts(executor, all.size(), parts, [&](std::size_t p, std::size_t first, std::size_t last) {
+    visit(first, last,
+          [&, &next = places[p]](std::size_t i, Index k) { of[at_index(next[i]++)] = k; });
+  });
   later.assign(n, kNone);
   links.clear();
   listed = all.size();

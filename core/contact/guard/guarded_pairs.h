@@ -7,6 +7,9 @@
 #include <vector>
 
 #include "core/contact/feature_pair.h"
+#include "core/contact/guard/constants.h"
+#include "core/contact/parts.h"
+#include "core/executor.h"
 #include "core/math/quad.h"
 #include "core/types.h"
 
@@ -77,6 +80,8 @@ struct GuardedPairs {
   std::vector<std::uint64_t> dropped_keys;  ///< of those that went last, ascending
   std::vector<std::uint64_t> open_keys;     ///< of those that went last and were open, ascending
   std::vector<GuardedPair<Real>> arrived;   ///< came since rows were made
+  /// Of each part of a listing, for each particle: how many pairs, then where its next one goes.
+  std::vector<std::vector<Index>> places;
 
   const GuardedPair<Real>& operator[](Index number) const {
     assert(at_index(number) < all.size());
@@ -92,9 +97,10 @@ struct GuardedPairs {
 
   /// Drops all pairs, and notes the keys of those that were open.
   void drop_all();
-  /// Lists all pairs with their particles.
+  /// Lists all pairs with their particles, in their order.
   /// @param particles  number of all
-  void list_all(std::size_t particles);
+  /// @param executor   may be null
+  void list_all(std::size_t particles, Executor* executor);
   /// Lists pairs that came later with their particles.
   /// @param first  number of the first of them
   void list_from(std::size_t first);
@@ -105,6 +111,11 @@ struct GuardedPairs {
   /// @param first  number of the first that was found since
   void note_arrivals(std::size_t first);
 };
+
+/// Into how many parts passes over all pairs are divided that keep a number for each particle.
+inline std::size_t parts_of_pairs(std::size_t pairs) {
+  return std::min(kMostPairParts, parts_of(pairs, kListedAtLeast));
+}
 
 /// Pairs of a particle that are fetched ahead of the one that is visited: they lie anywhere in
 /// memory.

@@ -33,20 +33,17 @@ void measure_lengths(const GuardedStep<Real>& step, Regions<Real>& regions) {
     regions.sizes[i].lanes[kLengthLane] = length(step.displacement[i]);
 }
 
-/// Bounds the regions of a pair's particles by their side's share of its gap.
-/// @param takes  whether particle i takes part
-template <class Real, class Takes>
-void share_gap(const GuardedPair<Real>& pair, Regions<Real>& regions, Takes&& takes) {
+/// Tells the particles of a pair their side's share of its gap.
+/// @param take  called with each particle and the share [m]
+template <class Real, class Take>
+[[gnu::always_inline]] inline void share_gap(const GuardedPair<Real>& pair,
+                                             const Regions<Real>& regions, Take&& take) {
   const Real gap = std::max(Real(0), pair.bound - regions.smallest_gap);
   const auto [first, second] =
       largest_on_sides(pair, [&](std::size_t i) { return regions.length(i); });
   const Real share = share_of(first, second);
-  for (std::size_t k = 0; k < 4; ++k) {
-    const auto i = at_index(pair.particle[k]);
-    if (!takes(i)) continue;
-    const Real own = gap * (k < first_side(pair.kind) ? share : 1 - share);
-    regions.sizes[i].lanes[kRadiusLane] = std::min(regions.radius(i), own);
-  }
+  for (std::size_t k = 0; k < 4; ++k)
+    take(at_index(pair.particle[k]), gap * (k < first_side(pair.kind) ? share : 1 - share));
 }
 
 template <class Real>
@@ -256,7 +253,8 @@ void anchor_wave(bool first, GuardedPairs<Real>& pairs, const GuardedStep<Real>&
 
 /// Anchors and measures everything.
 template <class Real>
-void anchor_all(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regions<Real>& regions) {
+void anchor_all(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Executor* executor,
+                Regions<Real>& regions) {
   for (const Index k : pairs.active) {
     const auto i = at_index(k);
     if (regions.anchored_at[i] != step.number) regions.anchored.push_back(k);
@@ -264,7 +262,7 @@ void anchor_all(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Region
     regions.anchor[i] = step.from[i];
   }
   for_pairs_from(pairs, 0, [&](GuardedPair<Real>& pair) { measure(regions, pair); });
-  share_all_gaps(pairs, step, regions);
+  share_all_gaps(pairs, step, executor, regions);
 }
 
 }  // namespace
@@ -279,15 +277,30 @@ void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
   }
 }
 
+/// Parts of the pairs leave radii of their own, whose least one counts, in whatever order.
 template <class Real>
 void share_all_gaps(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
-                    Regions<Real>& regions) {
+                    Executor* executor, Regions<Real>& regions) {
   measure_lengths(step, regions);
-  for (const Index k : pairs.active)
-    regions.sizes[at_index(k)].lanes[kRadiusLane] = std::numeric_limits<Real>::infinity();
-  for_pairs_from(pairs, 0, [&](const GuardedPair<Real>& pair) {
-    share_gap(pair, regions, [](std::size_t) { return true; });
-  });
+  const std::size_t n = regions.sizes.size(), parts = parts_of_pairs(pairs.all.size());
+  regions.radii.resize(std::max(regions.radii.size(), parts));
+  run_parts(
+      executor, pairs.all.size(), parts, [&](std::size_t p, std::size_t first, std::size_t last) {
+        std::vector<Real>& radii = regions.radii[p];
+        radii.assign(n, std::numeric_limits<Real>::infinity());
+        for (std::size_t k = first; k < last; ++k) {
+          const GuardedPair<Real>& pair = pairs.all[k];
+          if (pair.open || pair.gone) continue;
+          share_gap(pair, regions,
+                    [&radii](std::size_t i, Real own) { radii[i] = std::min(radii[i], own); });
+        }
+      });
+  for (const Index k : pairs.active) {
+    const auto i = at_index(k);
+    Real least = regions.radii[0][i];
+    for (std::size_t p = 1; p < parts; ++p) least = std::min(least, regions.radii[p][i]);
+    regions.sizes[i].lanes[kRadiusLane] = least;
+  }
   regions.dirty.clear();
 }
 
@@ -313,8 +326,11 @@ void admit_pairs(std::size_t first, const GuardedStep<Real>& step, Executor* exe
     columns.clear();
   }
   measure_lengths(step, regions);
-  for_pairs_from(pairs, first,
-                 [&](const GuardedPair<Real>& pair) { share_gap(pair, regions, is_new); });
+  for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
+    share_gap(pair, regions, [&](std::size_t i, Real own) {
+      if (is_new(i)) regions.sizes[i].lanes[kRadiusLane] = std::min(regions.radius(i), own);
+    });
+  });
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
     const auto [one, other] =
         largest_on_sides(pair, [&](std::size_t i) { return regions.radius(i); });
@@ -355,7 +371,7 @@ void anchor_loose(GuardedPairs<Real>& pairs, const GuardedStep<Real>& step, Regi
   for (int wave = 0; !regions.in_wave.empty(); ++wave) {
     stop_point();
     if (wave == kMostWaves) {
-      anchor_all(pairs, step, regions);
+      anchor_all(pairs, step, executor, regions);
       return;
     }
     anchor_wave(wave == 0, pairs, step, regions, executor, counts);

@@ -70,6 +70,7 @@ struct Regions {
   std::vector<Index> in_wave;              ///< particles of this wave of anchoring
   std::vector<AnchorPart<Real>> parts;     ///< of a wave
   ColumnsByKind<Real> columns;             ///< pairs that are measured together
+  std::vector<std::vector<Real>> radii;    ///< that parts of the pairs leave to all particles [m]
 
   Real radius(std::size_t particle) const { return sizes[particle][kRadiusLane]; }
   Real length(std::size_t particle) const { return sizes[particle][kLengthLane]; }
@@ -83,7 +84,7 @@ void anchor_anew(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
 /// Shares the gap of each pair by the speeds of its sides.
 template <class Real>
 void share_all_gaps(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& step,
-                    Regions<Real>& regions);
+                    Executor* executor, Regions<Real>& regions);
 
 /// Gives regions to particles that had no pairs, and marks as dirty those with larger ones than a
 /// new pair allows. Call before the new pairs are listed.

@@ -40,9 +40,9 @@ struct Soup {
     regions.parts.resize(16);
     pairs.is_active.assign(kParticles, 0);
     while (pairs.all.size() < kPairs) add_pair(random);
-    pairs.list_all(kParticles);
+    pairs.list_all(kParticles, nullptr);
     step.number = 1;
-    share_all_gaps(pairs, step, regions);
+    share_all_gaps(pairs, step, nullptr, regions);
   }
 
   void add_pair(Random& random) {
