@@ -7,7 +7,7 @@
 #include <cmath>
 #include <utility>
 
-#include "core/cloth/corner_places.h"
+#include "core/attachments/hand_disc.h"
 #include "core/error.h"
 
 namespace weft {
@@ -30,44 +30,6 @@ void validate(const GrabDef& def, std::size_t triangles) {
               def.stiffness);
   check_field("drag.", {"max_force", kForceRange, "N", "largest force of the hand"}, def.max_force);
   check_field("drag.", kTargetInfo, def.target);
-}
-
-/// Smooth weights over the disc around the hit, scaled by mass, so that the disc is accelerated
-/// uniformly.
-template <class Real>
-void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& grab) {
-  assert(def.radius > 0);
-  const CornerUv corners = corner_places(model, def.triangle);
-  double u = 0, v = 0;
-  for (std::size_t k = 0; k < 3; ++k) {
-    u += def.barycentric[k] * corners[k][0];
-    v += def.barycentric[k] * corners[k][1];
-  }
-  double sum = 0;
-  std::vector<double> weights;
-  const Index corner = model.triangles[static_cast<std::size_t>(def.triangle)][0];
-  const IndexRange& part = part_of_particle(model, corner).particles;
-  for (Index i = part.first; i < part.end(); ++i) {
-    const auto p = static_cast<std::size_t>(i);
-    const double du = static_cast<double>(model.material[p][0]) - u;
-    const double dv = static_cast<double>(model.material[p][1]) - v;
-    const double inside = 1 - (du * du + dv * dv) / (def.radius * def.radius);
-    if (!(inside > 0)) continue;
-    grab.particles.push_back(i);
-    weights.push_back(inside * inside * static_cast<double>(model.mass[p]));
-    sum += weights.back();
-  }
-  assert(weights.empty() || sum > 0);
-  for (const double w : weights) grab.weights.push_back(static_cast<Real>(w / sum));
-}
-
-template <class Real>
-void weigh_corners(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& grab) {
-  const Triangle& corners = model.triangles[static_cast<std::size_t>(def.triangle)];
-  for (std::size_t k = 0; k < 3; ++k) {
-    grab.particles.push_back(corners[k]);
-    grab.weights.push_back(static_cast<Real>(def.barycentric[k]));
-  }
 }
 
 template <class Real>
@@ -229,8 +191,7 @@ GrabId add_grab(const ClothModel<Real>& model, const ClothState<Real>& state, co
   Grab<Real> grab;
   grab.id = grabs.next_id++;
   grab.def = def;
-  if (def.radius > 0) weigh_disc(model, def, grab);
-  if (grab.particles.empty()) weigh_corners(model, def, grab);
+  weigh_hold(model, def, grab);
   for (Vec3Array<Real>* array : {&grab.impulse, &grab.velocity})
     array->assign(grab.particles.size(), Vec3<Real>::Zero());
   Vec3<Real> hit = Vec3<Real>::Zero();
@@ -339,11 +300,20 @@ void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gr
       if (w == 0) continue;
       others += (state.v[i] * keep + (force[i] * w + gravity) * step.dt) * grab.weights[n];
     }
-    const Vec3<Real> found = hand_force(grab, step, step.dt, state.x, others, own);
+    const Vec3<Real> resisted = others + grab.resisted;
+    const Vec3<Real> found = hand_force(grab, step, step.dt, state.x, resisted, own);
     share_force<Real>(grab.particles, grab.weights, found - grab.force, force);
+    grab.unresisted = others + found * (own * step.dt);
     grab.force = found;
     note_impulses(found, step.dt, grab);
   });
+}
+
+template <class Real>
+void note_resistance(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
+  for (Grab<Real>& grab : grabs.list) {
+    if (grab.def.mode == GrabMode::live) grab.resisted = weighted_mean(grab, v) - grab.unresisted;
+  }
 }
 
 template <class Real>
@@ -389,6 +359,7 @@ double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   template void pull_by_hand(const HandStep<Real>&, Real, ClothState<Real>&, Grabs<Real>&);  \
   template void add_hand_forces(const HandStep<Real>&, Real, const Vec3<Real>&,              \
                                 const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);    \
+  template void note_resistance(const Vec3Array<Real>&, Grabs<Real>&);                       \
   template void add_sling_forces(const Grabs<Real>&, Vec3Array<Real>&);                      \
   template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                        \
   template double work_of_hands(const Vec3Array<Real>&, Grabs<Real>&);

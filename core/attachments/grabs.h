@@ -51,6 +51,9 @@ struct Grab {
   Vec3Array<Real> velocity;  ///< of each particle when last observed [m/s]
   /// Live hand: on the cloth, in the last substep. Sling: if it were fired now [N].
   Vec3<Real> force = Vec3<Real>::Zero();
+  /// Live hand under relaxation: velocity of the held point in the last substep if only forces had
+  /// acted, and what springs and contact made of it besides [m/s].
+  Vec3<Real> unresisted = Vec3<Real>::Zero(), resisted = Vec3<Real>::Zero();
   Vec3d given = Vec3d::Zero();  ///< of a live hand to the cloth, in this tick [N s]
   /// Live hand: mean of its force over the last tick. Sling: as `force` [N].
   Vec3d told = Vec3d::Zero();
@@ -146,12 +149,19 @@ template <class Real>
 void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& state,
                   Grabs<Real>& grabs);
 
-/// The same force for solvers that take forces: adds it to `force`, which contains all others.
+/// The same force for solvers that take forces: adds it to `force`, which contains all others. What
+/// constraints will make of the velocity is taken to be what they made of the last one; without
+/// this a hand that holds resting cloth would expect a motion that never comes, and pull too
+/// little.
 /// @param keep     fraction of a velocity left by a step without forces, 0 to 1
 /// @param gravity  [m/s^2]
 template <class Real>
 void add_hand_forces(const HandStep<Real>& step, Real keep, const Vec3<Real>& gravity,
                      const ClothState<Real>& state, Grabs<Real>& grabs, Vec3Array<Real>& force);
+
+/// Call after a substep with `add_hand_forces`, which ended with the velocities `v` [m/s].
+template <class Real>
+void note_resistance(const Vec3Array<Real>& v, Grabs<Real>& grabs);
 
 /// Adds the constant forces of sling impulses, shared by weight [N].
 template <class Real>

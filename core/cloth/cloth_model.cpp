@@ -127,37 +127,45 @@ const ClothPart<Real>& part_of_particle(const ClothModel<Real>& model, Index par
 }
 
 template <class Real>
-std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius) {
-  assert(centre >= 0 && centre < model.particle_count());
-  assert(radius >= 0);
-  if (radius == 0) return {centre};
-  const auto& middle = model.material[static_cast<std::size_t>(centre)];
-  const ClothPart<Real>& part = part_of_particle(model, centre);
-  const auto is_near = [&](Index i) {
-    const auto& m = model.material[static_cast<std::size_t>(i)];
-    const double du = static_cast<double>(m[0] - middle[0]),
-                 dv = static_cast<double>(m[1] - middle[1]);
-    return i == centre || du * du + dv * dv <= radius * radius;
-  };
-  // What lies at the same place of the fabric, in another piece or on the far side of a projected
-  // mesh, is not joined to the centre near the disc.
+std::vector<Index> joined_near(const ClothModel<Real>& model, std::span<const Index> start,
+                               const std::function<bool(Index)>& is_near) {
+  assert(!start.empty());
+  const ClothPart<Real>& part = part_of_particle(model, start.front());
   std::vector<Edge> near;
+  for (const Index i : start.subspan(1)) near.push_back({start.front(), i});
   for (Index e = part.edges.first; e < part.edges.end(); ++e) {
     const Edge& edge = model.edges[static_cast<std::size_t>(e)];
     if (is_near(edge[0]) || is_near(edge[1])) near.push_back(edge);
   }
   const std::vector<Index> piece_of = pieces_along(near, model.mass.size());
   const auto piece = [&](Index i) { return piece_of[static_cast<std::size_t>(i)]; };
-  std::vector<Index> inside;
+  std::vector<Index> joined;
   for (Index i = part.particles.first; i < part.particles.end(); ++i)
-    if (piece(i) == piece(centre) && is_near(i)) inside.push_back(i);
-  return inside;
+    if (piece(i) == piece(start.front()) && is_near(i)) joined.push_back(i);
+  return joined;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                      \
-  template ClothModel<Real> build_cloth<Real>(const ClothDef&);                     \
-  template ClothModel<Real> build_cloths<Real>(const std::vector<ClothDef>&);       \
-  template const ClothPart<Real>& part_of_particle(const ClothModel<Real>&, Index); \
+template <class Real>
+std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius) {
+  assert(centre >= 0 && centre < model.particle_count());
+  assert(radius >= 0);
+  if (radius == 0) return {centre};
+  const auto& middle = model.material[static_cast<std::size_t>(centre)];
+  const std::array<Index, 1> start = {centre};
+  return joined_near(model, start, [&](Index i) {
+    const auto& m = model.material[static_cast<std::size_t>(i)];
+    const double du = static_cast<double>(m[0] - middle[0]),
+                 dv = static_cast<double>(m[1] - middle[1]);
+    return i == centre || du * du + dv * dv <= radius * radius;
+  });
+}
+
+#define WEFT_INSTANTIATE(Real)                                                             \
+  template ClothModel<Real> build_cloth<Real>(const ClothDef&);                            \
+  template ClothModel<Real> build_cloths<Real>(const std::vector<ClothDef>&);              \
+  template const ClothPart<Real>& part_of_particle(const ClothModel<Real>&, Index);        \
+  template std::vector<Index> joined_near(const ClothModel<Real>&, std::span<const Index>, \
+                                          const std::function<bool(Index)>&);              \
   template std::vector<Index> particles_in_disc(const ClothModel<Real>&, Index, double);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -2,7 +2,9 @@
 
 #include <cassert>
 #include <cstdint>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -262,6 +264,14 @@ ClothModel<Real> build_cloths(const std::vector<ClothDef>& defs);
 /// The part that contains a particle.
 template <class Real>
 const ClothPart<Real>& part_of_particle(const ClothModel<Real>& model, Index particle);
+
+/// The particles of a part that are near and that edges with a near end join to where it starts, in
+/// ascending order. What lies at the same place of the fabric, in another piece or on the far side
+/// of a projected mesh, is not among them.
+/// @param start  particles that belong together, of one part; not necessarily near
+template <class Real>
+std::vector<Index> joined_near(const ClothModel<Real>& model, std::span<const Index> start,
+                               const std::function<bool(Index)>& is_near);
 
 /// The particles of the same part within material distance `radius` [m] of particle `centre` that
 /// edges near there join to it, in ascending order; at radius 0 the centre alone.

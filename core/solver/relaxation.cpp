@@ -375,6 +375,7 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
     relax(tick, s);
     result.blow_up = move(tick);
     if (result.blow_up) return result;
+    note_resistance(state.v, grabs);
     const double pulled = work_of_hands(state.v, grabs);
     result.work += external_work(tick) + pulled;
     if (!collision.meter) continue;

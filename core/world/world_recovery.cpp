@@ -55,10 +55,12 @@ void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
       grab.impulse = known->impulse;
       grab.velocity = known->velocity;
       grab.force = known->force;
+      grab.resisted = known->resisted;
     } else {
       for (Vec3Array<Real>* array : {&grab.impulse, &grab.velocity})
         std::fill(array->begin(), array->end(), Vec3<Real>::Zero());
       grab.force.setZero();
+      grab.resisted.setZero();
     }
   }
 }

@@ -99,13 +99,8 @@ void add_hands(Step<Real>& step, Real progress) {
     Vec3<Real> velocity = Vec3<Real>::Zero();
     for (std::size_t n = 0; n < grab.particles.size(); ++n)
       velocity += work.v[static_cast<std::size_t>(grab.particles[n])] * grab.weights[n];
-    // No particle is accelerated beyond kFastestHeld.
-    const Vec3<Real> start = held_point(grab, step.state.x);
-    Vec3<Real> displacement = target - start;
-    const Real longest = static_cast<Real>(kFastestHeld) * step.dt, length = displacement.norm();
-    if (length > longest) displacement *= longest / length;
     const Vec3<Real> pull =
-        (start + displacement - held_point(grab, work.x)) * stiffness - velocity * grab.damping;
+        (target - held_point(grab, work.x)) * stiffness - velocity * grab.damping;
     const Real size = pull.norm(), most = static_cast<Real>(grab.def.max_force);
     const Real fraction = size > most ? most / size : Real(1);
     grab.force = pull * fraction;
@@ -222,6 +217,27 @@ bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start
       work.systems[p]);
 }
 
+/// Limits the mean velocities of what hands hold to kFastestHeld, and subtracts from a hand's force
+/// what it then does not give.
+template <class Real>
+void hold_back(Step<Real>& step) {
+  ImplicitWorkspace<Real>& work = step.work;
+  const Real longest = static_cast<Real>(kFastestHeld) * step.dt;
+  for (std::size_t h = 0; h < work.hand_count; ++h) {
+    Grab<Real>& grab = step.grabs.list[work.hands[h].grab];
+    for (std::size_t n = 0; n < grab.particles.size(); ++n) {
+      const auto i = static_cast<std::size_t>(grab.particles[n]);
+      Vec3<Real>& displacement = work.displacement[i];
+      const Real length = displacement.norm();
+      if (!(length > longest)) continue;
+      const Vec3<Real> lost = displacement * (1 - longest / length);
+      const Real rate = Scheme<Real>(step, i).rate;
+      grab.force -= lost * (step.model.mass[i] * rate * rate);
+      displacement -= lost;
+    }
+  }
+}
+
 }  // namespace
 
 template <class Real>
@@ -268,6 +284,7 @@ bool solve_displacements(Step<Real>& step, Real progress) {
         solved = take_newton_step(step, p, k == 0, work.starts[p]) && solved;
     }
   }
+  hold_back(step);
   place(step);
   return solved;
 }
