@@ -29,9 +29,12 @@ struct Wish {
 std::optional<Wish> wish_of(const ColliderDef& def, double time, const ColliderState& state) {
   if (state.move) return Wish{state.move->target, state.move->speed, state.move->turn_speed};
   if (def.motion.keyframes.empty()) return std::nullopt;
+  // Where it only turns, or only shifts, it comes back to that at the speeds of a command.
   const TopSpeeds top = top_speeds(def.motion);
-  return Wish{keyframed_pose(def, time), top.linear * kColliderCatchUp,
-              top.angular * kColliderCatchUp};
+  const MoveDef usual;
+  return Wish{keyframed_pose(def, time),
+              top.linear > 0 ? top.linear * kColliderCatchUp : usual.speed,
+              top.angular > 0 ? top.angular * kColliderCatchUp : usual.turn_speed};
 }
 
 /// Surface speed of the wanted twist, for the resistance against it [m/s].

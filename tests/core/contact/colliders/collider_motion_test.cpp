@@ -226,3 +226,35 @@ TEST_CASE("what an object is pushed back by does not slow it along that, and the
     CHECK((pushed ? -v[1] : v[0]) < 0.1);
   }
 }
+
+TEST_CASE(
+    "an object comes back to its keyframes, also where these only turn, only shift or stand") {
+  MotionDef motion;
+  motion.loop = true;
+  const int kind = GENERATE(0, 1, 2);
+  CAPTURE(kind);
+  if (kind == 0) motion.keyframes = {key(0, kOrigin), key(1, kOrigin, 1), key(2, kOrigin)};
+  if (kind == 1) motion.keyframes = {key(0, kOrigin), key(1, Vec3d(0.3, 0, 0)), key(2, kOrigin)};
+  if (kind == 2) motion.keyframes = {key(0, kOrigin)};
+  const ColliderDef def = ball(motion);
+  ColliderStates states = initial_states({def});
+  int tick = 0;
+  const auto run = [&](int ticks) {
+    for (const int end = tick + ticks; tick < end; ++tick) {
+      plan_motion({def}, tick * kTick, kTick, states);
+      advance_collider(kTick, kTick, states[0]);
+      finish_motion({def}, kTick, states);
+    }
+  };
+  run(30);
+  MoveDef away;
+  away.target = pose(states[0].pose.position + Vec3d(0, 0.05, 0.1), 0.8, Vec3d::UnitX());
+  states[0].move = away;
+  run(90);
+  REQUIRE((states[0].pose.position - away.target.position).norm() < 1e-9);
+  states[0].move.reset();
+  run(120);
+  const Pose wanted = keyframed_pose(def, tick * kTick);
+  CHECK((states[0].pose.position - wanted.position).norm() < 1e-6);
+  CHECK(angle_between(states[0].pose, wanted) < 1e-6);
+}
