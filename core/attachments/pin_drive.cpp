@@ -84,6 +84,7 @@ void bring_to_rest(Pins& pins) {
   for (Pin& pin : pins.list) {
     if (!pin.path) continue;
     std::fill(pin.path->velocity.begin(), pin.path->velocity.end(), Vec3d::Zero());
+    pin.path->impulse.setZero();
     pin.path->pace = 0;
   }
 }

@@ -90,7 +90,7 @@ std::optional<ClampLine> clamp_of_mesh(const ClothModel<Real>& model, const Clot
                                        Side side, double border) {
   const auto number = static_cast<std::size_t>(&part - model.parts.data());
   const ClampLine clamp{number, side, 0, 1, border};
-  if (!part.bends_by_links) return std::nullopt;
+  if (part.hinges.count > 0) return std::nullopt;  // without rigidity it may get some later
   const HeldStrip strip = held_strip(clamp);
   Index held = 0;
   for (Index n = part.triangles.first; n < part.triangles.end(); ++n) {

@@ -28,12 +28,18 @@ void add_pin_reactions(const ClothModel<Real>& model, const Vec3<Real>& gravity,
   if (pins.list.empty()) return;
   assert(seconds > 0 && pins.pin_count.size() == model.mass.size());
   const Vec3Array<double> pushed = impulses_of(reactions.contacts, model.mass.size(), seconds);
+  // A pin that moved, and may have arrived in this tick, has driven its particles.
+  const auto rested = [&held](const Pin& pin) {
+    return !pin.path && std::all_of(pin.particles.begin(), pin.particles.end(),
+                                    [&held](Index i) { return held.holds(i); });
+  };
+  std::vector<int> bearing(model.mass.size(), 0);  // pins that rested, of each particle
+  for (const Pin& pin : pins.list) {
+    for (const Index i : pin.particles) bearing[static_cast<std::size_t>(i)] += rested(pin) ? 1 : 0;
+  }
   for (const Pin& pin : pins.list) {
     PinReaction reaction{pin.id, Vec3d::Zero()};
-    const bool fixed = std::all_of(pin.particles.begin(), pin.particles.end(),
-                                   [&held](Index i) { return held.holds(i); });
-    // One that moved, and may have arrived in this tick, has driven its particles.
-    if (pin.path || !fixed) {
+    if (!rested(pin)) {
       reaction.force = pin.drive;
       reactions.pins.push_back(reaction);
       continue;
@@ -41,9 +47,9 @@ void add_pin_reactions(const ClothModel<Real>& model, const Vec3<Real>& gravity,
     Vec3d impulse = Vec3d::Zero();
     for (const Index k : pin.particles) {
       const auto i = static_cast<std::size_t>(k);
-      assert(pins.pin_count[i] > 0);
+      assert(bearing[i] > 0);
       const Vec3d weight = (gravity * model.mass[i]).template cast<double>() * seconds;
-      impulse -= (held.impulse(k) + pushed[i] + weight) / pins.pin_count[i];
+      impulse -= (held.impulse(k) + pushed[i] + weight) / bearing[i];
     }
     reaction.force = impulse / seconds;
     reactions.pins.push_back(reaction);

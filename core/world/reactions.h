@@ -29,7 +29,7 @@ struct Reactions {
   /// solver has no forces (relaxation).
   std::vector<PinReaction> pins;
 
-  /// Force of the cloth on each collider, mean over the tick [N].
+  /// Force of the cloth on each collider, mean over the tick [N]. Empty with the seed's contact.
   std::vector<Vec3d> colliders;
 };
 

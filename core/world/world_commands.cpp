@@ -18,8 +18,16 @@ namespace weft {
 
 template <class Real>
 PinId World<Real>::pin(const PinDef& def) {
+  const Vec3Array<Real> before = state_.v;
   const PinId id = hold(def);
   renew_clamps();
+  try {
+    refuse_too_stiff();  // its clamp stiffens
+  } catch (const DefinitionError&) {
+    unpin(id);
+    state_.v = before;
+    throw;
+  }
   return id;
 }
 

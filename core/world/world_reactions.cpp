@@ -50,9 +50,7 @@ void World<Real>::take_reactions() {
     assert(static_cast<std::size_t>(contact.collider) < found.colliders.size());
     found.colliders[static_cast<std::size_t>(contact.collider)] -= contact.force();
   }
-  if (contact_.seed) {
-    for (std::size_t k = 0; k < colliders_.size(); ++k) found.colliders[k] = colliders_[k].force;
-  }
+  if (contact_.seed) found.colliders.clear();  // it moves the cloth without telling its impulses
   if (contact_.guard) {
     for (const ContactPoint& contact : contacts_of(*contact_.guard, state_.x))
       found.contacts.push_back(contact);

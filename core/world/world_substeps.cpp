@@ -108,7 +108,7 @@ void World<Real>::refuse_too_stiff() const {
     if (given > longest)
       throw DefinitionError(
           "fabric.bending_damping", number_text(given),
-          "at most " + rounded_text(longest) + " s on this mesh in this tick, for " +
+          "at most " + rounded_text(longest * 0.995) + " s on this mesh in this tick, for " +
               std::to_string(kMostDashpotStages) + " stages",
           "a coarser mesh, a pin whose border is not close beside particles, or a "
           "higher tick_rate allows more");

@@ -68,7 +68,7 @@ void add_forces(const World<Real>& world, RecordBuilder& record) {
   for (std::size_t k = 0; k < world.def().hands.size(); ++k)
     record.add(reactions ? hand_force(world, k) : kUnknown);
   for (std::size_t k = 0; k < world.def().colliders.size(); ++k)
-    record.add(reactions ? reactions->colliders.at(k) : kUnknown);
+    record.add(reactions && k < reactions->colliders.size() ? reactions->colliders[k] : kUnknown);
 }
 
 }  // namespace

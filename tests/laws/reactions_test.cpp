@@ -171,3 +171,36 @@ TEST_CASE("to ask for forces changes nothing, and the coming forces are those th
       REQUIRE(coming.pins[k].force == now.pins[k].force);
   }
 }
+
+TEST_CASE("of two pins on the same particles the one that rests bears all, if the other moves") {
+  WorldDef def = test::empty_world(test::flat_cloth(9, 9, 0.4, 0.4));
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.environment.damping = 2;
+  def.cloths[0].fabric.stretch_damping = 0.01;
+  const PinDef strip{EdgeStrip{Side::top, 0}, 0, {}};
+  def.pins = {strip};
+  World<float> world(def);
+  world.measure_forces(true);
+  const bool moves = GENERATE(false, true);
+  const PinId second = world.pin(strip);
+  if (moves) {
+    const auto centre = static_cast<std::size_t>(world.pins().list.back().centre);
+    world.move_pin(second, {world.state().x[centre].cast<double>() + Vec3d(0, 2, 0), 0.5});
+  }
+  test::advance(world, 8);
+  double mass = 0, told = 0;
+  for (const float m : world.model().mass) mass += static_cast<double>(m);
+  for (const PinReaction& pin : world.reactions()->pins) told += pin.force.y();
+  CHECK(world.reactions()->pins.size() == 2);
+  CHECK(told == Approx(mass * 9.81).epsilon(0.01));
+}
+
+TEST_CASE("the seed's contact, which does not know its impulses, tells no force on objects") {
+  WorldDef def = test::empty_world(test::flat_cloth(5, 5, 0.4, 0.4));
+  def.contact.model = ContactModel::seed;
+  def.colliders = {{"ground", PlaneDef{Vec3d(0, -0.5, 0), Vec3d::UnitY()}}};
+  World<float> world(def);
+  world.measure_forces(true);
+  world.step();
+  CHECK(world.reactions()->colliders.empty());
+}

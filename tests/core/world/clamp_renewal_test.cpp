@@ -65,3 +65,44 @@ TEST_CASE("a strip of one cloth stiffens its own hinges alone, and gives them ba
   world.unpin(strip);
   for (std::size_t part = 0; part < 3; ++part) CHECK(stiffened(part) == 0);
 }
+
+TEST_CASE(
+    "a pin whose clamp is too stiff for the damping is refused live as at load, and nothing else") {
+  WorldDef def = test::empty_world(test::flat_cloth(41, 41, 0.2, 0.2));
+  FabricDef& fabric = def.cloths[0].fabric;
+  fabric.bending_warp = fabric.bending_weft = 1e-3;
+  fabric.bending_damping = 0.0095;
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.pins = {{MaterialPoint{0, 0}, 0, {}}};
+  World<float> world(def), other(def);
+  const PinDef disc{MaterialPoint{0.5, 0.5}, 0.0222, {}};
+  WorldDef with_disc = def;
+  with_disc.pins.push_back(disc);
+  REQUIRE_THROWS_AS(World<float>(with_disc), DefinitionError);
+  for (int tick = 0; tick < 10; ++tick) {
+    world.step();
+    other.step();
+  }
+  CHECK_THROWS_AS(world.pin(disc), DefinitionError);
+  CHECK(world.pins().list.size() == 1);
+  for (int tick = 0; tick < 5; ++tick) {
+    world.step();
+    other.step();
+  }
+  CHECK(world.state().x == other.state().x);
+}
+
+TEST_CASE("the longest bending damping that a refusal tells is taken") {
+  WorldDef def = test::empty_world(test::flat_cloth(41, 41, 0.2, 0.2));
+  FabricDef& fabric = def.cloths[0].fabric;
+  fabric.bending_warp = fabric.bending_weft = 1e-3;
+  fabric.bending_damping = 10;
+  try {
+    const World<float> refused(def);
+    FAIL("10 s are too long");
+  } catch (const DefinitionError& error) {
+    REQUIRE(error.limit.starts_with("at most "));
+    fabric.bending_damping = std::stod(error.limit.substr(8));
+  }
+  CHECK_NOTHROW(World<float>(def));
+}
