@@ -51,6 +51,7 @@ const FIRST_PING_INTERVAL = 200; // [ms]
 const CALL_TIMEOUT = 30000; // for an answer [ms]
 const SILENCE_LIMIT = 10000; // silence after which the connection counts as dead [ms]
 const FRAME = 1; // the type of a binary message
+const KEY_VIEW = { codec: 'packed' }; // which makes the next frame a key
 const EVENTS = new Set(['state', 'roster', 'presence', 'pins', 'grabs', 'notice', 'bye']);
 const MEASURED = new Set(['drag', 'pin', 'release']); // commands with a visible effect
 
@@ -270,7 +271,7 @@ export class Session extends Emitter {
     this.welcome = null;
     this.#announced = null;
     this.#frames.drop();
-    this.#key.fulfil();
+    this.#key = new KeyWish(this.timers);
     this.#transfers.clear();
     this.#pace.clear();
     for (const id of [...this.#waiting.keys()]) this.#take(id)?.reject(new ConnectionLost(reason));
@@ -325,6 +326,7 @@ export class Session extends Emitter {
   #announce(announcement) {
     this.#announced = announcement;
     this.mesh = null;
+    this.#frames.expectMesh();
     if (this.options.mesh !== 'http') return;
     const still = () => this.#announced === announcement;
     fetchMesh(this.#url, announcement, this.options.fetch).then(
@@ -337,6 +339,7 @@ export class Session extends Emitter {
   #adoptMesh(data) {
     this.mesh = matchMesh(this.#announced, data);
     this.#frames.begin(this.mesh.announcement.cloths, data);
+    if (this.#key.resume()) this.post('view', KEY_VIEW);
     this.emit('mesh', this.mesh);
   }
 
@@ -381,9 +384,10 @@ export class Session extends Emitter {
   }
 
   /** @param {import('./frames.js').Received} received */
-  #receive({ sequence, frame }) {
+  #receive({ sequence, frame, early }) {
     if (!frame?.observed) this.#connection.send(encodeAck(sequence));
-    if (!frame) return this.#key.renew() && this.post('view', { codec: 'packed' });
+    if (early) return this.#key.defer();
+    if (!frame) return this.#key.renew() && this.post('view', KEY_VIEW);
     this.#key.fulfil();
     const own = frame.applied.find(({ viewer }) => viewer === this.viewer);
     if (own) this.#meter.applied(own.number, this.#now());

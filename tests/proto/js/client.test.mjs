@@ -361,6 +361,51 @@ test('over HTTP the mesh is fetched from its address', async () => {
   assert.deepEqual(asked, ['http://host:1/api/v1/mesh/00']);
 });
 
+test('packed frames that come before a mesh over HTTP are passed over, and a key is asked for once it is there', async () => {
+  const [first, second] = packedStreams();
+  assert.notEqual(first.order.vertices.length, second.order.vertices.length);
+  const fetched = [];
+  const fetch = () => new Promise((resolve) => fetched.push(resolve));
+  const deliver = ({ mesh }) => fetched.shift()({ ok: true, arrayBuffer: async () => mesh.slice().buffer });
+  const { client, socket, sockets } = await join({ mesh: 'http', fetch });
+  const told = [];
+  client.on('frame', ({ sequence, positions }) => told.push([sequence, positions.length / 3]));
+  client.on('fault', (fault) => assert.fail(fault));
+  const meet = async (stream) => {
+    const mesh = client.next('mesh');
+    deliver(stream);
+    await mesh;
+  };
+  socket.say(announced(first));
+  await meet(first);
+  socket.sayBytes(first.frames[3][0]); // without a key, which is so asked for just before the load
+  assert.equal(socket.ops('view').length, 1);
+  socket.say(announced(second));
+  for (const [packed] of second.frames.slice(0, 3)) socket.sayBytes(packed);
+  socket.sayBytes(readGolden('frame_observed.bin'));
+  assert.equal(socket.acks.length, 4, 'all but the observed one are acknowledged');
+  assert.equal(socket.ops('view').length, 1, 'a key would come too early');
+  await meet(second);
+  assert.deepEqual(socket.ops('view').map(({ codec }) => codec), ['packed', 'packed']);
+  socket.sayBytes(second.frames[3][0]);
+  assert.deepEqual(told, []);
+  assert.equal(socket.ops('view').length, 2);
+  socket.sayBytes(second.frames[0][0]);
+  assert.deepEqual(told.map(([, vertices]) => vertices), [second.order.vertices.length]);
+  assert.equal(sockets.length, 1);
+});
+
+test('a mesh over HTTP that no packed frame came before asks for no key', async () => {
+  const [stream] = packedStreams();
+  const fetch = async () => ({ ok: true, arrayBuffer: async () => stream.mesh.slice().buffer });
+  const { client, socket } = await join({ mesh: 'http', fetch });
+  const mesh = client.next('mesh');
+  socket.say(announced(stream));
+  await mesh;
+  socket.sayBytes(stream.frames[0][0]);
+  assert.equal(socket.ops('view').length, 0);
+});
+
 test('a binary query resolves when its data has come', async () => {
   const { client, socket } = await join();
   const query = client.query('positions', { format: 'f32' });
