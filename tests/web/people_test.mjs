@@ -158,3 +158,19 @@ test('without a token the page says what is missing, and does not try again', bo
   assert.equal(await page.locator('#connection-text').innerText(), 'Refused');
   await context.close();
 });
+
+test('a link that is pasted into the address of a page that is not let in lets it in', bounded, async () => {
+  const context = await browser.newContext();
+  const page = await context.newPage();
+  const own = (name) =>
+    until(() => page.getByRole('list', { name: 'Viewers' }).getByRole('button', { name }).isVisible(), `it is ${name}`);
+  await page.goto(`${server.url}?light=simple`);
+  const told = page.getByRole('alert');
+  await until(() => told.isVisible(), 'the page is not let in');
+  await page.goto(`${server.url}?light=simple#token=${LOOKER}`); // the same document
+  await own('Ben');
+  assert.ok(!(await told.isVisible()), 'nothing is missing any more');
+  await page.goto(`${server.url}?light=simple#token=${OPERATOR}`);
+  await own('Ada');
+  await context.close();
+});

@@ -9,6 +9,7 @@ export class RoomPanel {
   private dialog: Promise<RoomDialog> | null = null; // loaded when it is first opened
   private role = 'viewer';
   private address = socket_of(own_room()); // of the socket that is open
+  private token = own_token(); // with which it was opened
   private copies = false; // a copy is being made
   private many = false; // whether the server has more than one room
 
@@ -76,12 +77,16 @@ export class RoomPanel {
     return state !== null && typeof state === 'object' && 'from' in state ? String(state.from) : '';
   }
 
-  /** Goes where the address leads, as after the browser's Back. */
+  /**
+   * Goes where the address leads, as after the browser's Back, or once a whole link was pasted where the page was not
+   * let in: browsers load nothing anew for what follows the #.
+   */
   private follow_address(): void {
-    const address = socket_of(own_room());
+    const [address, token] = [socket_of(own_room()), own_token()];
     this.show();
-    if (address !== this.address) this.client.enter(address, own_token());
+    if (address !== this.address || token !== this.token) this.client.enter(address, token);
     this.address = address;
+    this.token = token;
   }
 
   private show(): void {
