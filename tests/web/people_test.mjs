@@ -149,6 +149,34 @@ test('a link that an operator makes lets its guest look, and shows as a QR code'
   }
 });
 
+test('a link that an operator made is shown no more in another room', bounded, async () => {
+  const ada = await enter(OPERATOR);
+  try {
+    const field = ada.getByRole('textbox', { name: 'Link to look' });
+    const in_room = (name) =>
+      until(async () => (await read(ada, 'phase')) === 'open' && (await read(ada, 'room')) === name, name);
+    const make_link = async () => {
+      await ada.getByRole('button', { name: 'Link to look' }).click();
+      await until(() => field.isVisible(), 'the link');
+      return new URLSearchParams(new URL(await field.inputValue()).hash.slice(1)).get('room');
+    };
+    await open_list(ada);
+    assert.equal(await make_link(), null, 'it leads to the first room');
+    await close_list(ada);
+    await ada.getByRole('button', { name: 'Try it yourself' }).click();
+    await in_room('ada');
+    await open_list(ada);
+    await until(async () => (await field.count()) === 0, 'it is gone');
+    assert.equal(await make_link(), 'ada');
+    await ada.goBack();
+    await in_room('default');
+    await until(async () => (await field.count()) === 0, 'it is gone, though the list was open');
+    assert.deepEqual(ada.complaints, []);
+  } finally {
+    await ada.context().close();
+  }
+});
+
 test('without a token the page says what is missing, and does not try again', bounded, async () => {
   const context = await browser.newContext();
   const page = await context.newPage();

@@ -3,12 +3,13 @@ import type { State, Viewer } from '../../../proto/js/messages.js';
 import { named, write_words } from '../view/words.js';
 import type { Company } from '../wire/company.js';
 import { tell_refusal } from '../wire/connection.js';
-import { link_with } from '../wire/own_address.js';
+import { link_with, own_room } from '../wire/own_address.js';
 import { element } from './element.js';
 import type { PeopleList } from './people_list.js';
 
 /** What is known of the people in the room. */
 export interface People {
+  room: string;
   own: number;
   viewers: Viewer[];
   policy: State['policy'];
@@ -57,7 +58,7 @@ export class PeoplePanel {
 
   private people(): People {
     const { viewers, policy } = this;
-    return { own: this.client.viewer, viewers, policy, follows: this.company.follows };
+    return { room: own_room(), own: this.client.viewer, viewers, policy, follows: this.company.follows };
   }
 
   /** The list is no part of the first load. */

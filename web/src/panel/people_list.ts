@@ -26,6 +26,8 @@ export class PeopleList {
   private policies = make('div', 'policies');
   private rows = make('ul', 'rows');
   private links = make('div', 'links');
+  private link = make('div', 'link'); // the one that was made last
+  private room = ''; // for which it was made
   private told = '';
 
   constructor(
@@ -40,8 +42,10 @@ export class PeopleList {
     this.make_links();
   }
 
-  /** Changes nothing, and no focus, while all is as it was. */
+  /** Changes nothing, and no focus, while all is as it was. A link lets others into one room, and goes with it. */
   show(people: People): void {
+    if (people.room !== this.room) this.link.replaceChildren();
+    this.room = people.room;
     const told = JSON.stringify([people.own, people.policy, people.follows, people.viewers.map(known_of)]);
     if (told === this.told) return;
     this.told = told;
@@ -100,11 +104,11 @@ export class PeopleList {
   }
 
   private make_links(): void {
-    const shown = make('div', 'link');
     const make_link = async (right: 'look' | 'hold') => {
       const { token } = (await this.client.invite(right)) as unknown as { token: string };
       const link = this.tools.link_with(token);
       const { renderSVG } = await import('uqr');
+      if (link !== this.tools.link_with(token)) return; // the page is in another room by now
       const field = document.createElement('input');
       field.className = 'field';
       field.readOnly = true;
@@ -114,13 +118,13 @@ export class PeopleList {
       picture.setAttribute('role', 'img');
       picture.setAttribute('aria-label', `QR code of the link to ${right}`);
       picture.innerHTML = renderSVG(link, { border: 4 });
-      shown.replaceChildren(field, picture);
+      this.link.replaceChildren(field, picture);
       field.select();
     };
     this.links.append(
       this.button('link-look', 'Link to look', () => make_link('look')),
       this.button('link-hold', 'Link to hold', () => make_link('hold')),
-      shown,
+      this.link,
     );
   }
 
