@@ -23,7 +23,8 @@ bool is_about_rooms(const proto::Command& command) {
 
 bool is_for_its_viewer_alone(const Inbound& item) {
   return is<proto::Query>(item) || is<proto::Hash>(item) || is<proto::Pick>(item) ||
-         is<proto::Advance>(item) || is<proto::Load>(item) || is<proto::ListRooms>(item);
+         is<proto::Advance>(item) || is<proto::Load>(item) || is<proto::CreateRoom>(item) ||
+         is<proto::ListRooms>(item);
 }
 
 bool ends_its_advance(const Order& order, const Inbound& item) {

@@ -57,7 +57,8 @@ bool is(const Inbound& item) {
 bool is_beside_the_cloth(const Inbound& item);
 /// Whether it concerns the server's rooms and not this one's cloth, so that it is not logged.
 bool is_about_rooms(const proto::Command& command);
-/// Whether only its viewer would have any use of it.
+/// Whether only its viewer would have any use of it, or it may have to wait for what outlasts its
+/// viewer: a scene under construction.
 bool is_for_its_viewer_alone(const Inbound& item);
 
 /// Whether it is a pause by the viewer of the running `advance`, which waits for nothing.

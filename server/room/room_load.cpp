@@ -1,5 +1,6 @@
 // How a room loads another scene: it is built beside the running one.
 
+#include <cassert>
 #include <exception>
 #include <utility>
 
@@ -72,6 +73,7 @@ void Room::tell_loaded(ViewerId viewer) {
 void Room::start_build(proto::ViewerId viewer, std::function<WorldDef()> definition) {
   Executor* const executor = executor_;
   const double limit = options_.limit ? options_.limit->seconds() : 0;
+  assert(!order_.building);  // all that builds waits for what is being built
   order_.building.emplace();
   order_.building->viewer = viewer;
   order_.building->build =

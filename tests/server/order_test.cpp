@@ -212,10 +212,12 @@ TEST_CASE("what a viewer changed before it went is changed, and what it asked is
 /// Rooms of which another one may have viewers.
 struct OneOtherRoom : OtherRooms {
   bool has_viewers = false;
+  int reserved = 0;
 
   proto::ListRoomsReply list() const override { return {}; }
   proto::Result<std::shared_ptr<RoomName>> reserve(const std::string&,
                                                    const std::string&) override {
+    ++reserved;
     return std::shared_ptr<RoomName>();
   }
   proto::Result<proto::RoomInfo> open(const std::shared_ptr<RoomName>&, BuiltScene&&,
@@ -228,6 +230,25 @@ struct OneOtherRoom : OtherRooms {
     return std::nullopt;
   }
 };
+
+TEST_CASE("a room that waits for a load is not made if its viewer goes, and the load goes on") {
+  Jobs jobs;
+  OneOtherRoom others;
+  RoomOptions options = with_jobs(jobs);
+  options.others = &others;
+  TestRoom t(true, {}, options);
+  t.join(1);
+  t.join(2);
+  t.tell(1, R"({"op":"load","id":1,"scene":"other"})");
+  t.tell(2, R"({"op":"create_room","id":2,"name":"mine"})");
+  t.leave(2);
+  CHECK(jobs.list.size() == 1);
+  jobs.run_all();
+  t.room->finish_turn();
+  CHECK(others.reserved == 0);
+  CHECK(t.output.last("result", 1)["epoch"] == 2);
+  CHECK(t.room->world().def().name == "other");
+}
 
 TEST_CASE("after a dear command a viewer alone waits too, if another room has viewers") {
   double cpu = 0;
