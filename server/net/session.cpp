@@ -222,7 +222,6 @@ void Session::on_text(std::string_view text) {
   const auto request = proto::parse_request(text);
   if (request) return on_request(*request, received);
   refuse(request.error());
-  note();
 }
 
 void Session::on_request(const proto::Request& request, double received) {
@@ -244,10 +243,8 @@ void Session::on_hello(proto::Request request) {
   auto& hello = std::get<proto::Hello>(request.command);
   if (const auto token = std::exchange(hello.token, std::nullopt)) {
     const auto grant = context_.tokens.find(*token, room_->name());
-    if (!grant && context_.tokens.required()) {
-      refuse(unknown_token(false, proto::Hello::kOp, request.id));
-      return note();
-    }
+    if (!grant && context_.tokens.required())
+      return refuse(unknown_token(false, proto::Hello::kOp, request.id));
     if (grant) room_->put({viewer_, number_, *grant});
   }
   put(request);
@@ -260,7 +257,6 @@ void Session::put(const proto::Request& request) {
   error.command = proto::name_of(request.command);
   error.id = request.id;
   refuse(error);
-  note();
 }
 
 void Session::on_view(const proto::Request& request, const proto::View& view) {
@@ -268,8 +264,7 @@ void Session::on_view(const proto::Request& request, const proto::View& view) {
   if (auto error = check_right(request.command, hub().role(viewer_), false)) {
     error->command = "view";
     error->id = request.id;
-    refuse(*error);
-    return note();
+    return refuse(*error);
   }
   const bool had_frames = channel_->wants_frames(), had_forces = channel_->wants_forces();
   if (view.hz) hub().set_most_frames(viewer_, *view.hz);
@@ -309,12 +304,12 @@ void Session::on_excess(std::string_view text) {
   error.limit = proto::Limit{};
   error.limit->maximum = context_.options.limits.messages_per_second;
   refuse(error);
-  note();
 }
 
 void Session::refuse(const proto::Error& error) {
   room_->metrics().count_error(proto::name_of(error.code));
   if (channel_) channel_->send(text_message(proto::encode_error(error)));
+  note();
 }
 
 void Session::answer(const std::optional<proto::Id>& id, const proto::Reply& reply) {
@@ -357,15 +352,18 @@ void Session::cut_later() {
   if (std::exchange(cutting_, true)) return;
   cut_.expires_after(duration_of(kCloseSeconds));
   cut_.async_wait([self = shared_from_this()](error_code error) {
-    if (!error) beast::get_lowest_layer(self->ws_).close();
+    if (!error) self->finish();
   });
 }
 
+/// A viewer that sends is alive; one that does not take the end of what it is sent, such as that of
+/// its closed room, is cut off all the same.
 void Session::watch() {
   const double patience = context_.options.limits.pong_seconds;
   watch_.expires_after(duration_of(patience / 2));
   watch_.async_wait([self = shared_from_this(), patience](error_code error) {
     if (error || !self->channel_) return;
+    if (self->channel_->closing()) return self->cut_later();
     if (self->context_.clock() - self->alive_ > patience)
       return self->close_by_policy(kCloseNoPong, "no answer to pings");
     if (!std::exchange(self->pinging_, true))

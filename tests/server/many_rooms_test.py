@@ -4,10 +4,11 @@ import asyncio
 import contextlib
 import json
 import os
+import socket
 
 import websockets
 
-from foreign_client import Server, SocketTest, Viewer, main
+from foreign_client import PATIENCE, Server, SocketTest, Viewer, main
 
 
 class ManyRooms(SocketTest):
@@ -181,6 +182,31 @@ class EmptyRooms(SocketTest):
             await asyncio.sleep(0.05)
             names = [room["name"] for room in (await viewer.ask("list_rooms"))["rooms"]]
         self.assertEqual(names, ["default", "kept"])
+
+
+class ClosedRooms(SocketTest):
+    options = ("--scene", "flag", "--paused", "--pong-seconds", "1")
+
+    async def test_a_viewer_that_reads_nothing_and_goes_on_sending_keeps_no_closed_room(self):
+        viewer = await self.viewer()
+        await viewer.ask("create_room", name="left", paused=True)
+        narrow = socket.socket()
+        narrow.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 4096)
+        narrow.connect((self.server.addresses["host"], self.server.addresses["port"]))
+        deaf = await Viewer.open(self.server, query="/left", max_queue=1, sock=narrow)
+        self.addCleanup(narrow.close)
+        deaf.reader.cancel()
+        deaf.socket.transport.pause_reading()
+        for _ in range(100):  # more than is sent ahead, and fewer than overflow its queue
+            await deaf.tell("query", id="deaf", what="positions")
+        await viewer.ask("close_room", name="left")
+
+        async def insist():
+            while True:
+                await deaf.tell("ping")
+                await asyncio.sleep(0.1)
+        with self.assertRaises((ConnectionError, websockets.ConnectionClosed)):
+            await asyncio.wait_for(insist(), PATIENCE)
 
 
 class Ends(SocketTest):
