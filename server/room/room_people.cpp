@@ -99,13 +99,17 @@ void Room::take_pins_back(const Viewer& viewer) {
   rights_.left_as.erase(left);
 }
 
-/// Gives a viewer what its token grants.
+/// Gives a viewer what its token grants. Its hand is what became of it since, if it tells that
+/// token again; and one that waits for a hand waits on if the token grants none.
 void Room::admit(Viewer& viewer, const Grant& grant) {
+  const bool again = grant.token != 0 && grant.token == viewer.token;
+  const bool waits = viewer.hand == HandRight::waiting && grant.role == Role::viewer &&
+                     grant.hand == HandRight::by_policy;
   take_token(viewer, grant);
   viewer.info.role = grant.role;
   viewer.by_token = grant.by_token;
   viewer.by_link = !grant.room.empty();
-  if (viewer.hand != HandRight::muted) viewer.hand = grant.hand;
+  if (!again && !waits && viewer.hand != HandRight::muted) viewer.hand = grant.hand;
   if (!grant.name.empty()) viewer.info.name = grant.name;
   if (viewer.glances) {
     viewer.info.role = Role::viewer;

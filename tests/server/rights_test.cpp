@@ -259,6 +259,34 @@ TEST_CASE("the fourth to come by a link looks until it is given a hand or an ope
   }
 }
 
+TEST_CASE("a token that is told again neither gives a hand nor takes the one that was given") {
+  RoomOptions options;
+  options.linked = options.has_tokens = true;
+  TestRoom t(true, {}, options);
+  const auto looker = [](std::uint64_t token) {
+    return Grant{Role::viewer, HandRight::by_policy, "", true, "", token};
+  };
+  t.join(1);
+  for (const proto::ViewerId viewer : {2U, 3U, 4U})
+    t.room->take({viewer, 0, Join{false, looker(7)}});
+  int id = 0;
+  const auto start = [&] {
+    return t.say(4, R"({"op":"drag","phase":"start","drag":0,"particle":30,"id":)" +
+                        std::to_string(++id) + "}");
+  };
+  const auto tell = [&t](const Grant& grant) { t.room->take({4, ++t.number, grant}); };
+  tell(looker(7));
+  CHECK(start()["code"] == "not_allowed");
+  tell(looker(8));  // nor does another that grants no more
+  CHECK(start()["code"] == "not_allowed");
+  t.say(1, R"({"op":"policy","policy":"watch"})");
+  t.say(1, R"({"op":"give_hand","viewer":4})");
+  tell(looker(8));
+  CHECK(start()["op"] == "result");
+  tell(looker(9));  // another token counts as it is
+  CHECK(start()["code"] == "not_allowed");
+}
+
 TEST_CASE("a room without tokens is never without an operator") {
   RoomOptions options;
   options.linked = true;
