@@ -87,7 +87,8 @@ void Room::take_now(Inbound item) {
   const auto found = viewers_.find(item.viewer);
   if (found == viewers_.end()) return;
   if (const auto* grant = std::get_if<Grant>(&item.what)) return admit(found->second, *grant);
-  found->second.applied = item.number;
+  // A pause that ends its viewer's advance overtakes what waits behind that.
+  found->second.applied = std::max(found->second.applied, item.number);
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
     const bool charges = !is_alone();
     const double before = charges ? options_.cpu_clock() : 0;

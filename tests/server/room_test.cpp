@@ -302,6 +302,12 @@ TEST_CASE("load announces the new mesh to all before anything of the new epoch")
   CHECK(t.room->epoch() == 2);
 }
 
+std::vector<proto::AppliedCommand> applied_in(const std::string& bytes) {
+  const auto frame = proto::decode_frame(std::as_bytes(std::span(bytes.data(), bytes.size())));
+  REQUIRE(frame);
+  return frame->applied;
+}
+
 TEST_CASE("frames tell the number of the last message that they include") {
   TestRoom t;
   t.join(4);
@@ -309,10 +315,20 @@ TEST_CASE("frames tell the number of the last message that they include") {
   t.room->take({4, 7, Noted{}});
   t.clock.now += 1;
   t.room->finish_turn();
-  const std::string& bytes = t.output.frames.back();
-  const auto frame = proto::decode_frame(std::as_bytes(std::span(bytes.data(), bytes.size())));
-  REQUIRE(frame);
-  CHECK(frame->applied == std::vector<proto::AppliedCommand>{{4, 7}});
+  CHECK(applied_in(t.output.frames.back()) == std::vector<proto::AppliedCommand>{{4, 7}});
+}
+
+TEST_CASE("a frame tells the pause that ended an advance, not what that overtook") {
+  TestRoom t;
+  t.join(4);
+  t.tell(4, R"({"op":"advance","n":100000})");
+  t.room->advance_until(0);
+  t.tell(4, R"({"op":"hash"})");
+  t.tell(4, R"({"op":"pause"})");
+  CHECK_FALSE(t.room->advancing());
+  t.clock.now += 1;
+  t.room->finish_turn();
+  CHECK(applied_in(t.output.frames.back()) == std::vector<proto::AppliedCommand>{{4, 3}});
 }
 
 TEST_CASE("set is all or nothing, and pins, drags and particles that do not exist are refused") {
