@@ -254,6 +254,10 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Restore& command) {
   const auto found = saves_.find(command.name);
   if (!found) return found.error();
   const weft::server::Save& save = **found;
+  if (options_.others) {  // whose rooms may have taken since what this one cost then
+    const TickCost cost = save.world->cost_in(save.world->environment());
+    if (auto error = options_.others->admit(options_.name, cost)) return *std::move(error);
+  }
   if (order_.advance) end_advance(ErrorCode::interrupted, "a viewer sent restore", "");
   world_ = save.world->fork();
   mesh_ = save.mesh;

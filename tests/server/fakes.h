@@ -16,6 +16,7 @@
 #include "core/error.h"
 #include "proto/messages/commands.h"
 #include "server/net/viewer_channel.h"
+#include "server/room/other_rooms.h"
 #include "server/room/room.h"
 #include "server/room/room_output.h"
 
@@ -134,6 +135,30 @@ struct RecordingOutput : RoomOutput {
     for (const auto& [viewer, text] : sent)
       if (nlohmann::json::parse(text)["op"] == op) ++found;
     return found;
+  }
+};
+
+/// Rooms of which another one may have viewers, and that together may cost so much.
+struct OneOtherRoom : OtherRooms {
+  bool has_viewers = false;
+  int reserved = 0;
+  double most_updates = 1e18;  ///< that a room may cost in a tick
+
+  proto::ListRoomsReply list() const override { return {}; }
+  proto::Result<std::shared_ptr<RoomName>> reserve(const std::string&,
+                                                   const std::string&) override {
+    ++reserved;
+    return std::shared_ptr<RoomName>();
+  }
+  proto::Result<proto::RoomInfo> open(const std::shared_ptr<RoomName>&, BuiltScene&&,
+                                      bool) override {
+    return proto::RoomInfo{};
+  }
+  std::optional<proto::Error> close(const std::string&) override { return std::nullopt; }
+  bool others_have_viewers(const std::string&) const override { return has_viewers; }
+  std::optional<proto::Error> admit(const std::string&, const TickCost& cost) override {
+    if (cost.updates() <= most_updates) return std::nullopt;
+    return proto::make_error(proto::ErrorCode::too_costly, "too much");
   }
 };
 

@@ -209,28 +209,6 @@ TEST_CASE("what a viewer changed before it went is changed, and what it asked is
   CHECK(t.say(2, R"({"op":"advance","id":3,"n":1})")["op"] == "result");
 }
 
-/// Rooms of which another one may have viewers.
-struct OneOtherRoom : OtherRooms {
-  bool has_viewers = false;
-  int reserved = 0;
-
-  proto::ListRoomsReply list() const override { return {}; }
-  proto::Result<std::shared_ptr<RoomName>> reserve(const std::string&,
-                                                   const std::string&) override {
-    ++reserved;
-    return std::shared_ptr<RoomName>();
-  }
-  proto::Result<proto::RoomInfo> open(const std::shared_ptr<RoomName>&, BuiltScene&&,
-                                      bool) override {
-    return proto::RoomInfo{};
-  }
-  std::optional<proto::Error> close(const std::string&) override { return std::nullopt; }
-  bool others_have_viewers(const std::string&) const override { return has_viewers; }
-  std::optional<proto::Error> admit(const std::string&, const TickCost&) override {
-    return std::nullopt;
-  }
-};
-
 TEST_CASE("a room that waits for a load is not made if its viewer goes, and the load goes on") {
   Jobs jobs;
   OneOtherRoom others;

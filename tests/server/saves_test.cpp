@@ -50,6 +50,22 @@ TEST_CASE("a save holds no viewer's hand, restoring lets go of those there are a
         "result");
 }
 
+TEST_CASE("a state that would cost more than all rooms may is not restored, and nothing changes") {
+  OneOtherRoom others;
+  RoomOptions options;
+  options.others = &others;
+  TestRoom t(true, {}, options);
+  t.join(1);
+  t.say(1, name_text("save", "dear", 1));
+  t.say(1, R"({"op":"advance","n":3,"id":2})");
+  const auto before = t.say(1, R"({"op":"hash","id":3})");
+  others.most_updates = 1;
+  CHECK(t.say(1, name_text("restore", "dear", 4))["code"] == "too_costly");
+  CHECK(t.say(1, R"({"op":"hash","id":5})")["hash"] == before["hash"]);
+  others.most_updates = 1e18;
+  CHECK(t.say(1, name_text("restore", "dear", 6))["tick"] == 0);
+}
+
 TEST_CASE("a name that nothing was saved under is refused with those that there are") {
   TestRoom t;
   t.join(1);
