@@ -77,7 +77,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void on_binary();
   void on_request(const proto::Request& request, double received);
   void on_hello(proto::Request request);
-  void put(const proto::Request& request);
+  void put(const proto::Request& request, const std::optional<Grant>& grant = {});
   void on_view(const proto::Request& request, const proto::View& view);
   void choose_codec(const proto::View& view);
   void on_excess(std::string_view text);
@@ -241,17 +241,19 @@ void Session::on_request(const proto::Request& request, double received) {
 /// Takes the token out of a `hello`, because nothing behind the session needs to know it.
 void Session::on_hello(proto::Request request) {
   auto& hello = std::get<proto::Hello>(request.command);
+  std::optional<Grant> grant;
   if (const auto token = std::exchange(hello.token, std::nullopt)) {
-    const auto grant = context_.tokens.find(*token, room_->name());
+    grant = context_.tokens.find(*token, room_->name());
     if (!grant && context_.tokens.required())
       return refuse(unknown_token(false, proto::Hello::kOp, request.id));
-    if (grant) room_->put({viewer_, number_, *grant});
   }
-  put(request);
+  put(request, grant);
 }
 
-void Session::put(const proto::Request& request) {
-  if (room_->put({viewer_, number_, request})) return;
+/// @param grant  of the token that it tells, if it does; goes before it
+void Session::put(const proto::Request& request, const std::optional<Grant>& grant) {
+  const bool fits = !grant || room_->put({viewer_, number_, *grant});
+  if (fits && room_->put({viewer_, number_, request})) return;
   proto::Error error = proto::make_error(proto::ErrorCode::busy, "too many commands are waiting",
                                          "wait for answers before sending more");
   error.command = proto::name_of(request.command);

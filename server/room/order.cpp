@@ -39,6 +39,17 @@ bool is_held_up(const Order& order, const Inbound& item) {
          (building->viewer == item.viewer || is<proto::Load>(item) || is<proto::CreateRoom>(item));
 }
 
+void add_waiting(Order& order, Inbound item) {
+  const auto last = std::find_if(order.waiting.rbegin(), order.waiting.rend(),
+                                 [&](const Inbound& other) { return other.viewer == item.viewer; });
+  const auto* newer = std::get_if<Noted>(&item.what);
+  auto* note = last == order.waiting.rend() ? nullptr : std::get_if<Noted>(&last->what);
+  if (!newer || !note) return order.waiting.push_back(std::move(item));
+  last->number = item.number;
+  note->wants_frame = note->wants_frame || newer->wants_frame;
+  if (newer->forces) note->forces = newer->forces;
+}
+
 bool has_waiting(const Order& order, proto::ViewerId viewer) {
   return std::any_of(order.waiting.begin(), order.waiting.end(),
                      [viewer](const Inbound& item) { return item.viewer == viewer; });

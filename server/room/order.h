@@ -66,6 +66,9 @@ bool ends_its_advance(const Order& order, const Inbound& item);
 /// Whether an `advance` or a `load` holds it up. These hold up only the later commands of their own
 /// viewer, and a load other loads; all other commands run between the ticks of an `advance`.
 bool is_held_up(const Order& order, const Inbound& item);
+/// Puts an item behind what waits. Of a viewer's notes with no command between them one is kept,
+/// with what all of them say: there may be any number of them, because no mailbox bounds them.
+void add_waiting(Order& order, Inbound item);
 /// Whether something of this viewer waits.
 bool has_waiting(const Order& order, proto::ViewerId viewer);
 /// Takes out what waits of this viewer.

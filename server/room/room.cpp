@@ -86,7 +86,10 @@ void Room::take_now(Inbound item) {
   if (std::holds_alternative<Leave>(item.what)) return leave(item.viewer);
   const auto found = viewers_.find(item.viewer);
   if (found == viewers_.end()) return;
-  if (const auto* grant = std::get_if<Grant>(&item.what)) return admit(found->second, *grant);
+  if (const auto* grant = std::get_if<Grant>(&item.what)) {
+    admit(found->second, *grant);
+    return on_finished(item.viewer);
+  }
   // A pause that ends its viewer's advance overtakes what waits behind that.
   found->second.applied = std::max(found->second.applied, item.number);
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {

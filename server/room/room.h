@@ -87,7 +87,7 @@ class Room {
   Room(RoomOptions options, SceneSource scenes, BuiltScene&& scene, RoomOutput& output, Clock clock,
        Metrics& metrics, Executor* executor = nullptr);
 
-  /// Called when a taken command is finished.
+  /// Called when a taken command is finished, or a token that was told.
   std::function<void(proto::ViewerId)> on_finished = [](proto::ViewerId) {};
 
   /// Takes an item of a viewer, between two ticks, and runs everything whose turn it is. While an

@@ -11,7 +11,7 @@
 
 namespace weft::server {
 void Room::take(Inbound item) {
-  order_.waiting.push_back(std::move(item));
+  add_waiting(order_, std::move(item));
   work_off();
 }
 
@@ -23,7 +23,7 @@ void Room::take_meanwhile(Inbound item) {
   if (tick_.runs && may_run && !waits && is_beside_the_cloth(item))
     return take_now(std::move(item));
   tick_.replaced = tick_.replaced || (may_run && replaces_state(item));
-  order_.waiting.push_back(std::move(item));
+  add_waiting(order_, std::move(item));
 }
 
 /// Whether it will make the tick that runs worthless.
@@ -136,7 +136,9 @@ void Room::note_halt() {
   spdlog::warn("scene {}: {}", world_->def().name, what);
   metrics_.count_halt();
   notify(proto::NoticeLevel::warning, "halted",
-         what + "; the room is paused. Let go, take back what was set last, reset or load, or resume to try again");
+         what +
+             "; the room is paused. Let go, take back what was set last, reset or load, or resume "
+             "to try again");
   if (order_.advance) end_advance(proto::ErrorCode::halted, what, "reset, or take a lighter scene");
 }
 

@@ -7,7 +7,8 @@ namespace weft::server {
 bool Mailbox::put(Inbound item) {
   {
     const std::lock_guard lock(mutex_);
-    if (std::holds_alternative<proto::Request>(item.what)) {
+    if (std::holds_alternative<proto::Request>(item.what) ||
+        std::holds_alternative<Grant>(item.what)) {
       std::size_t& waiting = waiting_[item.viewer];
       if (waiting >= most_commands_) return false;
       ++waiting;

@@ -20,8 +20,8 @@ class Mailbox {
   /// so. Set it before the first of these.
   std::function<void()> on_arrival = [] {};
 
-  /// Appends. False, with nothing added, if the viewer has too many commands waiting; items other
-  /// than commands are always accepted.
+  /// Appends. False, with nothing added, if the viewer has too many commands waiting, tokens that it
+  /// tells among them; other items are always accepted.
   bool put(Inbound item);
 
   /// Everything that has arrived since the last call, in order.

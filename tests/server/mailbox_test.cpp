@@ -13,10 +13,11 @@ Inbound command_of(proto::ViewerId viewer, std::uint32_t number = 1) {
   return {viewer, number, proto::Request{std::nullopt, proto::Command(proto::Pause{})}};
 }
 
-TEST_CASE("the mailbox bounds the commands of one viewer and takes everything else") {
+TEST_CASE("the mailbox bounds commands and tokens of one viewer and takes everything else") {
   Mailbox mailbox(3);
   for (int i = 0; i < 3; ++i) CHECK(mailbox.put(command_of(1)));
   CHECK_FALSE(mailbox.put(command_of(1)));
+  CHECK_FALSE(mailbox.put({1, 2, Grant{}}));
   CHECK(mailbox.put(command_of(2)));
   CHECK(mailbox.put({1, 2, Noted{}}));
   CHECK(mailbox.put({1, 2, Leave{}}));

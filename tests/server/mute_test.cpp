@@ -116,4 +116,21 @@ TEST_CASE("a person that leaves and comes back with its token has its pins again
   CHECK(t.say(5, release(pin))["op"] == "result");
 }
 
+TEST_CASE("a token that is told counts as a command until it is taken, also behind an advance") {
+  Class room;
+  int taken = 0;
+  room.t.room->on_finished = [&](proto::ViewerId) { ++taken; };
+  const auto tell = [&] {
+    room.t.room->take({kOperator, ++room.t.number, Grant{Role::operator_, {}, "", true, "", 7}});
+  };
+  tell();
+  CHECK(taken == 1);
+  room.t.tell(kOperator, R"({"op":"advance","n":100000})");
+  tell();
+  CHECK(taken == 2);  // the advance
+  room.t.tell(kOperator, R"({"op":"pause"})");
+  room.t.room->finish_turn();
+  CHECK(taken == 4);
+}
+
 }  // namespace weft::server

@@ -209,6 +209,26 @@ TEST_CASE("what a viewer changed before it went is changed, and what it asked is
   CHECK(t.say(2, R"({"op":"advance","id":3,"n":1})")["op"] == "result");
 }
 
+TEST_CASE("of a viewer's notes that wait one is kept, with what all of them say") {
+  Order order;
+  for (std::uint32_t number = 1; number <= 1000; ++number) {
+    add_waiting(order, {1, number, Noted{number == 7, {}}});
+    add_waiting(order, {2, number, Noted{false, number == 9 ? std::optional(true) : std::nullopt}});
+  }
+  REQUIRE(order.waiting.size() == 2);
+  for (const Inbound& item : order.waiting) {
+    CHECK(item.number == 1000);
+    CHECK(std::get<Noted>(item.what).wants_frame == (item.viewer == 1));
+    CHECK(std::get<Noted>(item.what).forces.value_or(false) == (item.viewer == 2));
+  }
+  add_waiting(order, {1, 1001, proto::Request{{}, proto::Hash{}}});
+  add_waiting(order, {1, 1002, Noted{false, false}});
+  add_waiting(order, {1, 1003, Noted{}});
+  REQUIRE(order.waiting.size() == 4);
+  CHECK(order.waiting.back().number == 1003);
+  CHECK(std::get<Noted>(order.waiting.back().what).forces == false);
+}
+
 TEST_CASE("a room that waits for a load is not made if its viewer goes, and the load goes on") {
   Jobs jobs;
   OneOtherRoom others;
