@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <string_view>
+#include <utility>
 
 #include <boost/beast/http/rfc7230.hpp>
 
@@ -33,7 +34,7 @@ std::string_view view_of(boost::beast::string_view text) {
 }
 
 HttpResponse response(const HttpRequest& request, http::status status, const char* content_type,
-                      std::string body) {
+                      SharedBytes body) {
   HttpResponse out(status, request.version());
   out.set(http::field::server, "weft");
   out.set(http::field::content_type, content_type);
@@ -43,6 +44,11 @@ HttpResponse response(const HttpRequest& request, http::status status, const cha
   out.content_length(body.size());
   if (request.method() != http::verb::head) out.body() = std::move(body);
   return out;
+}
+
+HttpResponse response(const HttpRequest& request, http::status status, const char* content_type,
+                      std::string body) {
+  return response(request, status, content_type, SharedBytes(std::move(body)));
 }
 
 HttpResponse not_found(const HttpRequest& request, const std::string& path) {
@@ -84,8 +90,8 @@ HttpResponse mesh_response(const ServiceContext& context, const HttpRequest& req
     if (bytes) break;
   }
   if (!bytes) return not_found(request, path);
-  HttpResponse out = response(request, http::status::ok, "application/octet-stream",
-                              std::string(static_cast<const char*>(bytes.data()), bytes.size()));
+  HttpResponse out =
+      response(request, http::status::ok, "application/octet-stream", std::move(bytes));
   out.set(http::field::cache_control, "public, max-age=31536000, immutable");
   return out;
 }

@@ -5,14 +5,14 @@
 
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
-#include <boost/beast/http/string_body.hpp>
 
 #include "server/net/service_context.h"
+#include "server/net/shared_body.h"
 
 namespace weft::server {
 
 using HttpRequest = boost::beast::http::request<boost::beast::http::empty_body>;
-using HttpResponse = boost::beast::http::response<boost::beast::http::string_body>;
+using HttpResponse = boost::beast::http::response<SharedBody>;
 
 /// The path of the request's target, without query.
 std::string path_of(const HttpRequest& request);

@@ -15,6 +15,7 @@
 #include "server/net/http_routes.h"
 #include "server/net/lingering_close.h"
 #include "server/net/session.h"
+#include "server/net/socket_options.h"
 
 namespace weft::server {
 namespace {
@@ -39,6 +40,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
     const auto peer = stream_.socket().remote_endpoint(ignored);
     from_proxy_ = !ignored && context_.trusts(peer.address());
     stream_.socket().set_option(asio::ip::tcp::no_delay(true), ignored);
+    keep_backlog_small(stream_.socket());  // so that a slow client's pieces are small
   }
 
   void start() {
@@ -137,20 +139,35 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
 
   void write(HttpResponse response) {
     response_ = std::move(response);
+    serializer_.emplace(response_);
+    if (request_.method() != http::verb::head && response_.result() != http::status::not_modified)
+      return write_on();
+    // The announced length is that of the omitted body.
     expire_after(context_.options.limits.idle_seconds);
-    const auto done = [self = shared_from_this()](error_code error, std::size_t) {
-      if (error) return;
-      if (!self->response_.keep_alive() || self->context_.stopping) return self->end();
-      self->expire_after(self->context_.options.limits.idle_seconds);
-      self->take_request();
-    };
-    if (request_.method() == http::verb::head || response_.result() == http::status::not_modified) {
-      // The announced length is that of the omitted body.
-      header_only_.emplace(response_);
-      http::async_write_header(stream_, *header_only_, done);
-      return;
-    }
-    http::async_write(stream_, response_, done);
+    http::async_write_header(stream_, *serializer_,
+                             [self = shared_from_this()](error_code error, std::size_t) {
+                               if (!error) self->on_written();
+                             });
+  }
+
+  /// Writes as much as the connection takes. The deadline is that of each piece: a large mesh may
+  /// take a slow client long, and one that takes nothing is cut off.
+  void write_on() {
+    expire_after(context_.options.limits.idle_seconds);
+    http::async_write_some(stream_, *serializer_,
+                           [self = shared_from_this()](error_code error, std::size_t) {
+                             if (error) return;
+                             self->serializer_->is_done() ? self->on_written() : self->write_on();
+                           });
+  }
+
+  void on_written() {
+    const bool stays = response_.keep_alive() && !context_.stopping;
+    serializer_.reset();
+    response_ = {};  // it may share a large mesh
+    if (!stays) return end();
+    expire_after(context_.options.limits.idle_seconds);
+    take_request();
   }
 
   // The connection counts until it is closed, so that the limits cover closing ones too.
@@ -167,7 +184,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   beast::flat_buffer buffer_;
   HttpRequest request_;
   HttpResponse response_;
-  std::optional<http::response_serializer<http::string_body>> header_only_;
+  std::optional<http::response_serializer<SharedBody>> serializer_;  // of the response
 };
 
 }  // namespace

@@ -4,11 +4,16 @@ nor their connection. A foreign client on real sockets; verdicts are on what cam
 import asyncio
 import itertools
 import json
+import re
+import socket
+from pathlib import Path
 
-from foreign_client import SocketTest, main
+from foreign_client import PATIENCE, SocketTest, main
 
 RATE = 900  # messages a second of the one that floods; the limit is 1,000
 TICKS = 45  # for which it does
+PART = 64 * 1024
+IDLE = 30  # seconds after which the server cuts a download that stands
 
 
 class Floods(SocketTest):
@@ -74,6 +79,49 @@ class LargeMesh(SocketTest):
             self.assertGreater(mesh["bytes"], 8 << 20)
             self.assertEqual(len(viewer.binaries[-1]), mesh["bytes"])
             self.assertEqual((await viewer.ask("hash"))["op"], "result")
+
+
+class SlowDownloads(SocketTest):
+    options = ("--paused",)
+    COUNT = 30
+
+    def memory(self):
+        """What the server has of it [bytes]."""
+        status = Path(f"/proc/{self.server.process.pid}/status").read_text(encoding="utf-8")
+        return 1024 * int(re.search(r"VmRSS:\s*(\d+) kB", status)[1])
+
+    def begin(self, url):
+        """A download of which its client has read the head alone: that, and the connection."""
+        connection = socket.socket()
+        self.addCleanup(connection.close)
+        connection.settimeout(PATIENCE)
+        connection.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, PART)
+        connection.connect((self.server.addresses["host"], self.server.addresses["port"]))
+        connection.sendall(f"GET {url} HTTP/1.1\r\nHost: localhost\r\n\r\n".encode())
+        received = b""
+        while b"\r\n\r\n" not in received:
+            received += connection.recv(1)
+        return received, connection
+
+    async def test_downloads_of_a_mesh_share_its_bytes_and_a_slow_one_that_goes_on_is_not_cut_off(self):
+        viewer = await self.viewer()
+        scene = {"cloths": [{"rows": 450, "columns": 450}], "contact": {"self": "none"}}
+        await viewer.ask("load", scene=scene)
+        mesh = await viewer.wait_text(lambda m: m["op"] == "mesh" and m["epoch"] == 2)
+        before = self.memory()
+        downloads = [self.begin(mesh["url"]) for _ in range(self.COUNT)]
+        self.assertLess(self.memory() - before, self.COUNT / 3 * mesh["bytes"])
+        head, slow = downloads[0]
+        self.assertTrue(head.startswith(b"HTTP/1.1 200"), head)
+        loop, body = asyncio.get_running_loop(), b""
+        end = loop.time() + IDLE + 3
+        while loop.time() < end:
+            body += slow.recv(PART // 2)
+            await asyncio.sleep(0.5)
+        self.assertLess(len(body), mesh["bytes"] - (5 << 20), "more is left than any buffer holds")
+        while len(body) < mesh["bytes"] and (part := slow.recv(PART)):
+            body += part
+        self.assertEqual(body, viewer.binaries[-1])
 
 
 class LockStep(SocketTest):
