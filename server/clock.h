@@ -15,11 +15,15 @@ inline double process_seconds() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+/// Converts seconds to a duration of the standard library, for waiting.
+inline std::chrono::steady_clock::duration duration_of(double seconds) {
+  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
+      std::chrono::duration<double>(seconds));
+}
+
 /// Converts a process time to a time point of the standard library, for waiting.
 inline std::chrono::steady_clock::time_point time_point_of(double seconds) {
-  const auto left = std::chrono::duration<double>(seconds - process_seconds());
-  return std::chrono::steady_clock::now() +
-         std::chrono::duration_cast<std::chrono::steady_clock::duration>(left);
+  return std::chrono::steady_clock::now() + duration_of(seconds - process_seconds());
 }
 
 }  // namespace weft::server

@@ -1,7 +1,6 @@
 #include "server/net/http_session.h"
 
 #include <algorithm>
-#include <chrono>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -51,9 +50,7 @@ class HttpSession : public std::enable_shared_from_this<HttpSession> {
   }
 
  private:
-  void expire_after(double seconds) {
-    stream_.expires_after(std::chrono::milliseconds(static_cast<long>(seconds * 1000)));
-  }
+  void expire_after(double seconds) { stream_.expires_after(duration_of(seconds)); }
 
   std::string_view received() const {
     return {static_cast<const char*>(buffer_.data().data()), buffer_.size()};

@@ -1,7 +1,6 @@
 #include "server/net/session.h"
 
 #include <algorithm>
-#include <chrono>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -33,11 +32,7 @@ constexpr double kFlood = 2;  // this many times the limit of messages ends the 
 constexpr double kCloseSeconds = 5, kTokenSeconds = 5;  // to close; for a first message
 // Until a wrong token is refused, so that few can be tried. The connection counts meanwhile.
 constexpr double kWrongTokenSeconds = 0.5;
-
-std::chrono::steady_clock::duration duration_of(double seconds) {
-  return std::chrono::duration_cast<std::chrono::steady_clock::duration>(
-      std::chrono::duration<double>(seconds));
-}
+constexpr int kMostWrongTokens = 3;  // of a viewer that is in; the last one closes its connection
 
 class Session : public ViewerStream, public std::enable_shared_from_this<Session> {
  public:
@@ -101,6 +96,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   proto::ViewerId viewer_;
   ViewerChannel* channel_ = nullptr;  // of the hub; null before joining and after leaving
   std::uint32_t number_ = 0;          // of the last text message
+  int wrong_tokens_ = 0;
   double most_error_ = proto::kUsualPackedError;  // that it allows, if packed [m]
   double alive_ = 0;
   LastSegment last_segment_;
@@ -244,8 +240,11 @@ void Session::on_hello(proto::Request request) {
   std::optional<Grant> grant;
   if (const auto token = std::exchange(hello.token, std::nullopt)) {
     grant = context_.tokens.find(*token, room_->name());
-    if (!grant && context_.tokens.required())
-      return refuse(unknown_token(false, proto::Hello::kOp, request.id));
+    if (!grant && context_.tokens.required()) {
+      refuse(unknown_token(false, proto::Hello::kOp, request.id));
+      if (++wrong_tokens_ < kMostWrongTokens) return;
+      return close_by_policy(kCloseToken, "too many tokens that are not known");
+    }
   }
   put(request, grant);
 }

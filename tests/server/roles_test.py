@@ -253,6 +253,14 @@ class WithTokens(SocketTest):
         self.assertEqual((await viewer.ask("hello", token=OPERATOR))["role"], "operator")
         self.assertEqual((await viewer.ask("reset"))["op"], "result")
 
+    async def test_the_third_wrong_token_closes_whoever_is_in_with_4003(self):
+        guesser, other = await self.enter(LOOKER), await self.enter(OPERATOR)
+        for number in range(3):
+            error = await guesser.ask("hello", token=f"guessed-0123456789-{number}")
+            self.assertEqual((error["code"], error["field"]), ("not_allowed", "token"))
+        self.assertEqual(await guesser.wait_closed(), 4003)
+        self.assertEqual((await other.ask("hash"))["op"], "result")
+
 
 class TokensAtTheStart(unittest.TestCase):
     def serve(self, *options, **environment):
