@@ -44,7 +44,7 @@ TEST_CASE("the pins of a viewer together leave others three quarters, and what o
   CHECK(t.room->world().pins().list.size() == pins);
   const auto pin = [&](proto::ViewerId viewer, int particle) {
     const nlohmann::json text = {
-        {"op", "pin"}, {"id", 5}, {"particle", particle}, {"radius", 0.05}};
+        {"op", "pin"}, {"id", 100 + particle}, {"particle", particle}, {"radius", 0.05}};
     return t.say(viewer, text.dump());
   };
   std::size_t pinned = 0;

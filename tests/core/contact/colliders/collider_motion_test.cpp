@@ -235,7 +235,7 @@ TEST_CASE(
   CAPTURE(kind);
   if (kind == 0) motion.keyframes = {key(0, kOrigin), key(1, kOrigin, 1), key(2, kOrigin)};
   if (kind == 1) motion.keyframes = {key(0, kOrigin), key(1, Vec3d(0.3, 0, 0)), key(2, kOrigin)};
-  if (kind == 2) motion.keyframes = {key(0, kOrigin)};
+  if (kind == 2) motion = {.keyframes = {key(0, kOrigin)}};
   const ColliderDef def = ball(motion);
   ColliderStates states = initial_states({def});
   int tick = 0;
