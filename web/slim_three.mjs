@@ -59,7 +59,7 @@ export const slim_three = {
       const stand_in = path.startsWith(sources) && STAND_INS.get(path.slice(sources.length + 1));
       if (stand_in) return { contents: stand_in };
       const text = await readFile(path, "utf8");
-      const has_shader = /\.glsl\.js$|[/\\]lines[/\\]LineMaterial\.js$/.test(path);
+      const has_shader = /\.glsl\.js$|[/\\](lines[/\\]LineMaterial|extras[/\\]PMREMGenerator)\.js$/.test(path);
       return { contents: has_shader ? with_slim_shaders(text) : without_saving(text) };
     });
     build.onLoad({ filter: /[/\\]src[/\\]view[/\\].*\.ts$/ }, async ({ path }) => {

@@ -2,8 +2,7 @@ const MOST_PIXELS_PER_UNIT = 2;
 const LEAST_PIXELS_PER_UNIT = 0.5;
 const SLOW_PICTURE = 0.045; // that makes the following ones coarser [s]
 const JUDGED_PICTURES = 5; // slow in a row
-const JUDGED_TIME = 0.4; // that fewer slow pictures in a row take if each is very slow [s]
-const FEWEST_JUDGED = 3; // slow in a row; one or two may be a hitch
+const VERY_SLOW_PICTURE = 3 * SLOW_PICTURE; // counts twice, so that three are enough, but not one or two [s]
 // A step finer has twice the pixels, so a picture of less than half the limit has room for it.
 const ROOMY_PICTURE = SLOW_PICTURE / 2; // [s]
 const ROOMY_WAIT = 0.4; // of roomy pictures before the first try of a finer one [s]
@@ -21,7 +20,6 @@ export class Quality {
   still = false;
   private level = 0; // steps down from the finest; each halves the number of pixels
   private slow_pictures = 0; // in a row
-  private slow_time = 0; // that they took [s]
   private quick_time = 0; // since the last slow picture or change of level [s]
   private roomy_time = 0; // its last part in which all pictures were roomy [s]
   private trial = Infinity; // time since a step finer that is not decided yet [s]
@@ -41,7 +39,7 @@ export class Quality {
 
   /** Tells whether the picture is still, which leaves time for a fine one. */
   set_still(still: boolean): void {
-    if (this.still !== still) this.slow_pictures = this.slow_time = 0;
+    if (this.still !== still) this.slow_pictures = 0;
     this.still = still;
   }
 
@@ -58,30 +56,23 @@ export class Quality {
 
   private judge_slow(interval: number): void {
     this.quick_time = this.roomy_time = 0;
-    this.slow_pictures += 1;
-    this.slow_time += interval;
-    if (!this.is_slow || this.pixel_ratio <= LEAST_PIXELS_PER_UNIT) return;
+    this.slow_pictures += interval > VERY_SLOW_PICTURE ? 2 : 1;
+    if (this.slow_pictures < JUDGED_PICTURES || this.pixel_ratio <= LEAST_PIXELS_PER_UNIT) return;
     const failed = this.trial < TRIAL;
     if (failed && this.tried_roomy) this.roomy_wait = Math.min(LONGEST_WAIT, 2 * this.roomy_wait);
     if (failed) this.tight_wait = Math.min(LONGEST_WAIT, 2 * this.tight_wait);
-    this.change_level(this.steps_to_quick_pictures());
+    this.change_level(this.steps_from(interval));
     this.trial = Infinity;
   }
 
-  private get is_slow(): boolean {
-    if (this.slow_pictures >= JUDGED_PICTURES) return true;
-    return this.slow_pictures >= FEWEST_JUDGED && this.slow_time >= JUDGED_TIME;
-  }
-
   /** By as many steps as would do if all of a picture's time were that of its pixels, at least one. */
-  private steps_to_quick_pictures(): number {
-    const mean = this.slow_time / this.slow_pictures;
+  private steps_from(interval: number): number {
     const to_least = Math.ceil(2 * Math.log2(this.pixel_ratio / LEAST_PIXELS_PER_UNIT));
-    return Math.max(1, Math.min(to_least, Math.floor(Math.log2(mean / SLOW_PICTURE))));
+    return Math.max(1, Math.min(to_least, Math.floor(Math.log2(interval / SLOW_PICTURE))));
   }
 
   private judge_quick(interval: number): void {
-    this.slow_pictures = this.slow_time = 0;
+    this.slow_pictures = 0;
     this.quick_time += interval;
     this.roomy_time = interval < ROOMY_PICTURE ? this.roomy_time + interval : 0;
     this.trial += interval;
@@ -102,7 +93,7 @@ export class Quality {
 
   private change_level(step: number): void {
     this.level += step;
-    this.slow_pictures = this.slow_time = this.quick_time = this.roomy_time = 0;
+    this.slow_pictures = this.quick_time = this.roomy_time = 0;
   }
 }
 
