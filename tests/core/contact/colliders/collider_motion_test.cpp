@@ -207,7 +207,6 @@ TEST_CASE(
 TEST_CASE("what an object is pushed back by does not slow it along that, and the other way about") {
   ColliderDef def = ball({});
   def.max_force = 5;
-  constexpr double kTick = 1.0 / 60;
   for (const bool pushed : {true, false}) {
     ColliderStates states = initial_states({def});
     states[0].move = MoveDef{pose({10, -9, 0}), 1, 1};
