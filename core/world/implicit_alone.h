@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <string>
 
 #include "core/world/world.h"
@@ -7,6 +8,11 @@
 // Worlds of the solver `implicit` that verlet cannot step.
 
 namespace weft {
+
+/// Whether verlet would need more substeps a tick, or more updates, than any world may take.
+/// @param particles  of the world
+/// @param substeps   of verlet
+bool is_beyond_verlet(std::size_t particles, int substeps);
 
 /// Whether verlet cannot step the ticks that do not suit `implicit`: those in which the cloth
 /// touches something, is shaken violently, or a pin moves. Contact and pins act between the

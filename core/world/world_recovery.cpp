@@ -135,7 +135,9 @@ void World<Real>::advance_or_recover(int substeps) {
   if (kind == SolverKind::implicit) {
     without_loss = choose_substeps(SolverKind::verlet);
     const bool driven = pins_.any_moving();
-    solvers_.implicit.refuses = !steps_implicit_alone(*this);
+    // Refined runs give the same ticks to verlet, so that they differ by their steps alone.
+    solvers_.implicit.refuses =
+        !is_beyond_verlet(model_.mass.size(), (without_loss + refinement_ - 1) / refinement_);
     solvers_.implicit.status = ImplicitStatus::done;
     if ((solvers_.touching || driven) && solvers_.implicit.refuses) {
       solvers_.implicit.status = driven ? ImplicitStatus::driven : ImplicitStatus::touching;
@@ -175,7 +177,7 @@ void World<Real>::advance_or_recover(int substeps) {
     restore_last_good();
     take_back_hands(checkpoint_.grabs, grabs_);
     const bool last = attempt == kMostTickRetries || substeps > kMostSubsteps / 2;
-    if (last && kind == SolverKind::implicit && without_loss <= kMostSubsteps) {
+    if (last && kind == SolverKind::implicit && without_loss <= refinement_ * kMostSubsteps) {
       // However many substeps it takes: a cloth that is stopped in each tick would never move.
       report_.divergence->remedy = DivergenceRemedy::more_substeps;
       solvers_.implicit.status = ImplicitStatus::violent;

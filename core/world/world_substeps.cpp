@@ -27,7 +27,7 @@ int World<Real>::choose_substeps(SolverKind kind, const EnvironmentDef& environm
         count, substeps_for(stability_bound(part, kind, environment), tick_seconds(), fewest));
   if (!grabs_.list.empty())
     count = std::max(count, substeps_for_hands(kind, environment, count, fewest));
-  return static_cast<int>(std::min<long>(refinement_ * count, kMostSubsteps + 1));
+  return static_cast<int>(refinement_ * std::min<long>(count, kMostSubsteps + 1));
 }
 
 template <class Real>

@@ -68,11 +68,6 @@ void look(World<Real>& world, bool judged, bool led_out, CrossingCounter<Real>& 
   (led_out ? m.while_led_out : m.broken_promises) += broken_promises(world, found);
 }
 
-#define WEFT_INSTANTIATE(Real)                                              \
-  template bool measure_tick(World<Real>&, WorkLimit&, Measurement<Real>&); \
-  template void look(World<Real>&, bool, bool, CrossingCounter<Real>&, Measurement<Real>&);
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(measure_tick, look)
 
 }  // namespace weft::server

@@ -248,6 +248,24 @@ TEST_CASE("with implicit strongly damped cloth that meets a ball is not strained
   CHECK(largest < 0.05);
 }
 
+TEST_CASE("a refined run of implicit leaves the ticks to verlet that the run itself does") {
+  WorldDef def = implicit_world(damped_sheet(7, 0.1, 2e4, 0.003), 1);
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
+  World<float> world(def);
+  const double substeps = world.cost_of(SolverKind::verlet, def.environment).substeps;
+  REQUIRE(substeps < kMostSubsteps);
+  REQUIRE(4 * substeps > kMostSubsteps);
+  world.refine_substeps(4);
+  const Pin& pin = world.pins().list.back();
+  const auto centre = static_cast<std::size_t>(pin.centre);
+  world.move_pin(pin.id, {world.state().x[centre].cast<double>() + Vec3d(0, 0, 0.1), 0.3});
+  for (int tick = 0; tick < 3; ++tick) {
+    const TickReport& report = world.step();
+    CHECK(report.implicit == ImplicitStatus::driven);
+    CHECK(report.substeps == 4 * substeps);
+  }
+}
+
 TEST_CASE(
     "where verlet cannot step, implicit moves cloth with its pins, and says that it is alone") {
   WorldDef def = implicit_world(damped_sheet(7, 0.025, 3e4, 0.002), 1);
