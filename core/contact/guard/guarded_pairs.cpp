@@ -28,10 +28,9 @@ void GuardedPairs<Real>::list_all(std::size_t n, Executor* executor) {
   const std::size_t parts = parts_of_pairs(all.size());
   places.resize(std::max(places.size(), parts));
   const auto visit = [&](std::size_t first, std::size_t last, auto&& note) {
-    for (std::size_t k = first; k < last; ++k) {
-      if (all[k].open) continue;
-      for (const Index i : all[k].particle) note(at_index(i), static_cast<Index>(k));
-    }
+    for_pairs_between(*this, first, last, [&](const GuardedPair<Real>& pair) {
+      for (const Index i : pair.particle) note(at_index(i), number_of(pair));
+    });
   };
   run_parts(executor, all.size(), parts, [&](std::size_t p, std::size_t first, std::size_t last) {
     places[p].assign(n, 0);

@@ -139,13 +139,21 @@ void for_pairs_of(Pairs& pairs, std::size_t particle, Visit&& visit) {
   }
 }
 
-/// Calls visit(pair) for each pair from number `first` on that is neither open nor gone.
+/// Calls visit(pair) for each pair from number `first` to `last`, exclusive, that is neither open
+/// nor gone.
 template <class Pairs, class Visit>
-void for_pairs_from(Pairs& pairs, std::size_t first, Visit&& visit) {
-  for (std::size_t k = first; k < pairs.all.size(); ++k) {
+void for_pairs_between(Pairs& pairs, std::size_t first, std::size_t last, Visit&& visit) {
+  assert(last <= pairs.all.size());
+  for (std::size_t k = first; k < last; ++k) {
     auto& pair = pairs.all[k];
     if (!pair.open && !pair.gone) visit(pair);
   }
+}
+
+/// The same from number `first` on.
+template <class Pairs, class Visit>
+void for_pairs_from(Pairs& pairs, std::size_t first, Visit&& visit) {
+  for_pairs_between(pairs, first, pairs.all.size(), visit);
 }
 
 /// Forgets all pairs; keeps the memory.

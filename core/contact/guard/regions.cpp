@@ -288,12 +288,10 @@ void share_all_gaps(const GuardedPairs<Real>& pairs, const GuardedStep<Real>& st
       executor, pairs.all.size(), parts, [&](std::size_t p, std::size_t first, std::size_t last) {
         std::vector<Real>& radii = regions.radii[p];
         radii.assign(n, std::numeric_limits<Real>::infinity());
-        for (std::size_t k = first; k < last; ++k) {
-          const GuardedPair<Real>& pair = pairs.all[k];
-          if (pair.open || pair.gone) continue;
+        for_pairs_between(pairs, first, last, [&](const GuardedPair<Real>& pair) {
           share_gap(pair, regions,
                     [&radii](std::size_t i, Real own) { radii[i] = std::min(radii[i], own); });
-        }
+        });
       });
   for (const Index k : pairs.active) {
     const auto i = at_index(k);
