@@ -26,6 +26,10 @@ for (const kind of ["POINT_LIGHTS", "POINT_LIGHT_SHADOWS", "RECT_AREA_LIGHTS", "
   UNDEFINED.add(`NUM_${kind}`);
 }
 
+/** Functions of the renderer that nothing here calls. */
+export const UNUSED_FUNCTIONS = ["compileAsync", "copyTextureToTexture", "forceContextLoss", "forceContextRestore",
+  "initRenderTarget", "initTexture", "readRenderTargetPixelsAsync", "resetState"];
+
 /** Parts of the renderer that have nothing to do here: headsets, blocks of uniforms, cube maps. */
 const STAND_INS = new Map([
   [
@@ -60,7 +64,7 @@ export const slim_three = {
       if (stand_in) return { contents: stand_in };
       const text = await readFile(path, "utf8");
       const has_shader = /\.glsl\.js$|[/\\](lines[/\\]LineMaterial|extras[/\\]PMREMGenerator)\.js$/.test(path);
-      return { contents: has_shader ? with_slim_shaders(text) : without_saving(text) };
+      return { contents: has_shader ? with_slim_shaders(text) : without_unused(without_saving(text)) };
     });
     build.onLoad({ filter: /[/\\]src[/\\]view[/\\].*\.ts$/ }, async ({ path }) => {
       const text = await readFile(path, "utf8");
@@ -77,6 +81,12 @@ export function with_slim_own(text) {
 /** No scene is written to a file. */
 function without_saving(text) {
   return text.replace(/\n\ttoJSON\([^)]*\) \{\n[\s\S]*?\n\t\}\n/g, "\n");
+}
+
+/** The renderer's functions stand two tabs deep, and end where a line closes at that depth. */
+function without_unused(text) {
+  const unused = new RegExp(`\\n\\t\\tthis\\.(${UNUSED_FUNCTIONS.join("|")}) = [\\s\\S]*?\\n\\t\\t\\};\\n`, "g");
+  return text.replace(unused, "");
 }
 
 function with_slim_shaders(text) {

@@ -1,6 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { made_up_canvas, make_up_browser } from './support/made_up_gl.mjs';
+import { mesh_of } from './support/made_up_mesh.mjs';
 import { import_page_module } from './support/page_module.mjs';
 
 // What the page keeps on the graphics card, with graphics that are made up.
@@ -19,31 +20,6 @@ const BOARD = {
   ...place, name: 'board', kind: 'box', center: [0, 0.1, 0], half_extents: [0.3, 0.02, 0.3],
   orientation: [0, 0, 0, 1],
 };
-
-/** A server's mesh of one square cloth, of so many cells along a side, and objects. */
-function mesh_of(cells, colliders) {
-  const side = cells + 1;
-  const place_of = (i) => [(i % side) / cells, Math.floor(i / side) / cells];
-  const points = Array.from({ length: side * side }, (_, i) => place_of(i));
-  const triangles = [];
-  for (let y = 0; y < cells; y++) {
-    for (let x = 0; x < cells; x++) {
-      const a = y * side + x;
-      triangles.push(a, a + 1, a + side, a + 1, a + side + 1, a + side);
-    }
-  }
-  const cloth = { name: 'cloth', first_vertex: 0, first_triangle: 0, thickness: 0.004 };
-  const size = { vertices: side * side, triangles: triangles.length / 3 };
-  return {
-    announcement: { scene: 'made up', ...size, cloths: [{ ...cloth, ...size }], colliders },
-    data: {
-      restPositions: Float32Array.from(points.flatMap(([u, v]) => [u, 1, v])),
-      triangles: Uint32Array.from(triangles),
-      uv: Float32Array.from(points.flat()),
-      colliders: [],
-    },
-  };
-}
 
 test('thirty scenes one after the other leave no buffer, vertex array or texture behind', async () => {
   const alive = {};

@@ -3,7 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { readdir, readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { slim_three, UNDEFINED, with_slim_own } from '../../web/slim_three.mjs';
+import { slim_three, UNDEFINED, UNUSED_FUNCTIONS, with_slim_own } from '../../web/slim_three.mjs';
 import { require_package } from './support/packages.mjs';
 
 // What the page's build leaves out of three.
@@ -72,7 +72,8 @@ test('the page uses nothing of three that is left out', async () => {
   for (const name of await readdir(`${web}/src`, { recursive: true })) {
     if (!name.endsWith('.ts')) continue;
     const text = (await readFile(`${web}/src/${name}`, 'utf8')).replace(/\/\*[\s\S]*?\*\/|\/\/.*$/gm, '');
-    for (const left_out of [LEFT_OUT, set, /\bmap:|\.map = /]) {
+    const call = new RegExp(`\\.(${UNUSED_FUNCTIONS.join('|')})\\(`);
+    for (const left_out of [LEFT_OUT, set, /\bmap:|\.map = /, call]) {
       assert.equal(left_out.exec(text)?.[0] ?? null, null, name);
     }
   }

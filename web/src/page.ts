@@ -350,7 +350,7 @@ export class Page {
     const { still, interval } = this.clock.judge(this.dirty, moved && !this.state?.paused);
     if (this.stage.refine(still, interval)) this.resize();
     if (this.dirty) this.draw_picture();
-    else if (still) this.stage.expose(this.orbit.camera);
+    else if (still) this.expose();
   }
 
   private draw_picture(): void {
@@ -361,12 +361,18 @@ export class Page {
     const { width, height } = this.size();
     this.hands.update(this.holding.hands(), this.orbit.camera, width, height);
     this.crowd.draw(this.orbit.camera, { width, height });
-    this.world?.look_from(this.orbit.camera);
+    this.world?.look_from(this.orbit.camera, this.stage.drafts);
     this.stage.draw(this.orbit.camera);
     if (this.world && this.world.playback.tick >= 0) void this.stage.complete(this.orbit.camera);
     this.pictures += 1;
     const latency = this.latency.shown(this.world?.playback.time ?? 0, performance.now() / 1000);
     if (latency !== null) this.panels.latency(latency);
+  }
+
+  private expose(): void {
+    if (!this.stage.exposes) return;
+    this.world?.look_from(this.orbit.camera, false);
+    this.stage.expose(this.orbit.camera);
   }
 
   private point_at_cloth(): void {

@@ -111,7 +111,7 @@ export function expose_probe(page: Page): void {
     },
     /** Draws the cloths with other looks than the server's. */
     dress(looks: Look[]): void {
-      page.world?.cloth.dress(looks);
+      page.world?.dress(looks);
       page.redraw();
     },
     /** Draws weaves and hems, or cloth of one colour. */

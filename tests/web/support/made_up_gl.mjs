@@ -1,6 +1,7 @@
 // WebGL 2 without graphics: it takes every call, draws nothing, and counts what is alive.
 
 const NUMBERS = {
+  RENDERER: 0x1f01,
   VERSION: 0x1f02,
   SHADING_LANGUAGE_VERSION: 0x8b8c,
   SCISSOR_BOX: 0x0c10,
@@ -11,14 +12,18 @@ const NUMBERS = {
 };
 const LARGE = 1024; // every limit that is asked for
 
+/** What all canvases say they are drawn by. */
+const renderer = { name: '' };
+
 /**
  * @param {object} canvas
  * @param {Record<string, number>} alive is filled with counts by kind
  * @param {Record<string, number>} made  the same of all that ever were
  */
 function made_up_context(canvas, alive, made) {
-  const { VERSION, SHADING_LANGUAGE_VERSION, SCISSOR_BOX, VIEWPORT, ...rest } = NUMBERS;
+  const { RENDERER, VERSION, SHADING_LANGUAGE_VERSION, SCISSOR_BOX, VIEWPORT, ...rest } = NUMBERS;
   const answers = new Map([
+    [RENDERER, renderer.name],
     [VERSION, 'WebGL 2.0'],
     [SHADING_LANGUAGE_VERSION, 'WebGL GLSL ES 3.00'],
     [SCISSOR_BOX, [0, 0, canvas.width, canvas.height]],
@@ -68,8 +73,12 @@ export function made_up_canvas(alive, made = {}) {
 const made_up_label = () =>
   ({ style: { setProperty() {} }, toggleAttribute() {}, remove() {}, replaceChildren() {}, offsetWidth: 20 });
 
-/** Stands in for what the renderer and labels ask of a browser. */
-export function make_up_browser() {
+/**
+ * Stands in for what the renderer and labels ask of a browser.
+ * @param {string} drawn_by what all canvases say they are drawn by
+ */
+export function make_up_browser(drawn_by = 'a graphics card') {
+  renderer.name = drawn_by;
   globalThis.self ??= globalThis;
   globalThis.window ??= { devicePixelRatio: 1 };
   globalThis.document ??= {

@@ -18,8 +18,8 @@ import { weave_of } from './weave.js';
 import type { Weave } from './weave.js';
 import { WeftWays } from './weft_ways.js';
 
-/** Drawn by subdivision; larger meshes are fine enough by themselves. In simple light fewer, for slow machines. */
-const MOST_TRIANGLES = { whole: 40_000, simple: 8_000 };
+/** Drawn by subdivision; larger meshes are fine enough by themselves. Quickly drawn are fewer, for slow machines. */
+const MOST_TRIANGLES = { smooth: 40_000, quick: 8_000 };
 const MOST_LEVELS = 2;
 /** How far the drawn surface may leave the simulated one, of the distance that contact keeps or of what is free. */
 const REACH = 0.45;
@@ -59,13 +59,13 @@ export class ClothMesh {
   private space: FreeSpace;
 
   /**
-   * @param simple whether it is to be drawn quickly rather than smoothly
-   * @param room   tells how far a place is from any object at least [m]
+   * @param quick whether it is to be drawn quickly rather than smoothly
+   * @param room  tells how far a place is from any object at least [m]
    */
   constructor(
     private cloths: Cloth[],
     private data: MeshData,
-    simple = false,
+    quick = false,
     private room: (place: Vec3) => number = () => Infinity,
   ) {
     this.triangles = data.triangles;
@@ -73,7 +73,7 @@ export class ClothMesh {
     const cells = cells_of(data.triangles, data.uv);
     this.shaded = both_diagonals(data.triangles, cells);
     const corners = corners_of(data.triangles, data.uv);
-    const levels = levels_of(data.triangles.length / 3, MOST_TRIANGLES[simple ? 'simple' : 'whole']);
+    const levels = levels_of(data, quick);
     this.fine = new Subdivision(coarse, data.triangles, cells, corners, levels);
     const hems = this.hems();
     const vertices = hems.reduce((first, hem) => first + hem.vertices, this.fine.vertices);
@@ -271,9 +271,10 @@ function cut_of(cloth: Cloth, data: MeshData, extent: [number, number]): Cut {
   return { size: extent, round: { center: scaled(round.center), radii: scaled(round.radii) } };
 }
 
-/** How often a mesh of so many triangles is subdivided, to at most so many. */
-function levels_of(triangles: number, most: number): number {
+/** How often a mesh is subdivided. @param quick whether it is to be drawn quickly rather than smoothly */
+export function levels_of({ triangles }: MeshData, quick: boolean): number {
+  const most = MOST_TRIANGLES[quick ? 'quick' : 'smooth'];
   let levels = 0;
-  while (levels < MOST_LEVELS && triangles * 4 ** (levels + 1) <= most) levels += 1;
+  while (levels < MOST_LEVELS && (triangles.length / 3) * 4 ** (levels + 1) <= most) levels += 1;
   return levels;
 }

@@ -1,5 +1,6 @@
 import {
   BackSide,
+  Color,
   DirectionalLight,
   Group,
   HemisphereLight,
@@ -25,16 +26,31 @@ const SKY_STEP = 44;
 const KEY_STEP = 48; // on the floor, where what hangs high throws shadows far apart
 const VARIETY = 0.6; // by which that differs from exposure to exposure, so that what is left of each differs
 const MAP_SIZES = { key: 1024, sky: 512 }; // [texels]
-// From above and below: at first without anything else from there, then beside reflections. What comes
-// from below is what a floor of middle brightness throws back of the key light.
-const HEMISPHERE = { simple: ['#ffffff', '#b9b2a8', 1.1], whole: ['#333333', '#ddd5c9', 0.6] } as const;
+// From above and below: at first without anything else from there, then beside that of the room. What
+// comes from below is what a floor of middle brightness throws back of the key light.
+const HEMISPHERE = { simple: ['#ffffff', '#b9b2a8', 1.1], beside_room: ['#333333', '#ddd5c9', 0.6] } as const;
 const CONTACT = 0.85; // part of the light from above that its shadows take
 export const REFLECTED = 0.5; // part of the reflections' light that is used
+const ROOM = '#8f8d8a';
+/** Bright panels of the room, whose middle is where the cloth is: places [m], sides [m], and radiances. */
+const PANELS: [number, number, number, number, number][] = [
+  [-6, 5, 5, 5, 5.5],
+  [7, 3, 2, 4, 2],
+  [0, 8, -1, 5, 3],
+  [5, 3.5, -7, 5, 4.5],
+  [-7, 2.5, -5, 3, 3],
+];
+
+/**
+ * How much light there is. Simple: without shadows and without the room, whose preparation takes time.
+ * Quick: with the key light's shadow, its edge hard, and what the room gives on the whole. Whole: with
+ * both shadows and the room's reflections.
+ */
+export type Lighting = 'simple' | 'quick' | 'whole';
 
 /**
  * Light of a studio: a key light with shadows, a wide one from above whose shadows are those of
- * contact, a fill from behind without any, and the reflections of soft boxes.
- * At first it is simple: without reflections and shadows, whose preparation takes time.
+ * contact, a fill from behind without any, and a room of soft boxes. At first it is simple.
  */
 export class Light {
   readonly group = new Group();
@@ -42,11 +58,15 @@ export class Light {
   private sky = new DirectionalLight('#f2f5ff', 0.75);
   private back = new DirectionalLight('#e3ebff', 4.2);
   private hemisphere = new HemisphereLight(...HEMISPHERE.simple);
+  private room = light_of_room();
+  private lighting_: Lighting = 'simple';
   private center = new Vector3();
   private radius = 1; // of what is lit [m]
 
   constructor() {
-    this.group.add(this.hemisphere);
+    this.group.add(this.hemisphere, this.room);
+    this.room.visible = false;
+    this.sky.shadow.intensity = CONTACT;
     for (const light of [this.key, this.sky, this.back]) this.group.add(light, light.target);
     for (const [light, size] of [[this.key, MAP_SIZES.key], [this.sky, MAP_SIZES.sky]] as const) {
       light.shadow.mapSize.set(size, size);
@@ -57,19 +77,16 @@ export class Light {
     this.show(null);
   }
 
-  /** Changes between the first, simple light and the whole. */
-  set whole(whole: boolean) {
-    this.key.castShadow = this.sky.castShadow = whole;
-    const [above, below, intensity] = HEMISPHERE[whole ? 'whole' : 'simple'];
+  set lighting(lighting: Lighting) {
+    this.lighting_ = lighting;
+    this.key.castShadow = lighting !== 'simple';
+    this.sky.castShadow = lighting === 'whole';
+    this.room.visible = lighting === 'quick'; // else by reflections
+    const [above, below, intensity] = HEMISPHERE[lighting === 'simple' ? 'simple' : 'beside_room'];
     this.hemisphere.color.set(above);
     this.hemisphere.groundColor.set(below);
     this.hemisphere.intensity = intensity;
-  }
-
-  /** Draws the shadows of contact, or leaves them out where they would take too long. */
-  set contact(drawn: boolean) {
-    this.sky.shadow.autoUpdate = drawn;
-    this.sky.shadow.intensity = drawn ? CONTACT : 0;
+    this.show(null);
   }
 
   /** Fits the shadows to the box that can move [m]; a smaller box gives finer ones. */
@@ -95,7 +112,8 @@ export class Light {
    */
   show(sample: Sample | null, count = 1): number {
     const texel = (size: number) => (2 * this.radius) / size;
-    const blur = (metres: number, size: number) => Math.min(14, Math.max(1, metres / texel(size)));
+    const hard = this.lighting_ !== 'whole';
+    const blur = (metres: number, size: number) => (hard ? 1 : Math.min(14, Math.max(1, metres / texel(size))));
     this.key.shadow.radius = blur(KEY_BLUR, MAP_SIZES.key);
     const part = sample ? (1 + VARIETY * sample.pixel[0]) / Math.sqrt(count) : 0;
     this.sky.shadow.radius = sample ? SKY_STEP * part : blur(SKY_BLUR, MAP_SIZES.sky);
@@ -116,6 +134,28 @@ export class Light {
 export const asks_for_simple_light = (search: string) => new URLSearchParams(search).get('light') === 'simple';
 
 /**
+ * What comes from the room, without where exactly: light that changes evenly with the direction of a
+ * surface, which is the mean of what comes from all sides and the part that grows with its cosine
+ * (Ramamoorthi and Hanrahan 2001, "An efficient representation for irradiance environment maps").
+ */
+export function light_of_room(): HemisphereLight {
+  const wall = new Color(ROOM);
+  const sum = wall.clone().multiplyScalar(4 * Math.PI); // over all directions
+  const way = new Vector3(); // the same of directions by their light
+  for (const [x, y, z, size, radiance] of PANELS) {
+    const place = new Vector3(x, y, z);
+    const angle = 4 * Math.asin(size ** 2 / (size ** 2 + 4 * place.lengthSq())); // of the panel, seen from there [sr]
+    sum.add(wall.clone().multiplyScalar(-angle)).addScalar(radiance * angle);
+    way.addScaledVector(place.normalize(), (radiance - wall.g) * angle);
+  }
+  const mean = sum.multiplyScalar(REFLECTED / 4);
+  const slope = (way.length() * REFLECTED) / 2;
+  const light = new HemisphereLight(mean.clone().addScalar(slope), mean.addScalar(-slope));
+  light.position.copy(way);
+  return light;
+}
+
+/**
  * Reflections of large bright panels in a dim room, prepared for rough and smooth surfaces. They
  * have to be made again when the graphics were lost.
  */
@@ -132,18 +172,11 @@ export function reflections(renderer: WebGLRenderer): WebGLRenderTarget {
   return target;
 }
 
-function soft_boxes(): Scene {
+export function soft_boxes(): Scene {
   const room = new Scene();
   const shell = new SphereGeometry(10, 24, 12);
-  room.add(new Mesh(shell, new MeshBasicMaterial({ color: '#8f8d8a', side: BackSide })));
-  const panels: [number, number, number, number, number][] = [
-    [-6, 5, 5, 5, 5.5],
-    [7, 3, 2, 4, 2],
-    [0, 8, -1, 5, 3],
-    [5, 3.5, -7, 5, 4.5],
-    [-7, 2.5, -5, 3, 3],
-  ];
-  for (const [x, y, z, size, strength] of panels) {
+  room.add(new Mesh(shell, new MeshBasicMaterial({ color: ROOM, side: BackSide })));
+  for (const [x, y, z, size, strength] of PANELS) {
     const panel = new Mesh(new PlaneGeometry(size, size), new MeshBasicMaterial());
     panel.material.color.setScalar(strength);
     panel.position.set(x, y, z);

@@ -6,7 +6,7 @@ const TAPS = 8;
 
 /**
  * Replaces the renderer's even grid of shadow taps, which leaves bands in a soft edge, by a spiral
- * that is turned differently in each pixel. Call it before anything is drawn.
+ * that is turned differently in each pixel; a shadow of radius 1 or less gets a single tap. Call it before anything is drawn.
  */
 export function soften_shadows(): void {
   const chunk = ShaderChunk.shadowmap_pars_fragment;
@@ -25,7 +25,9 @@ const SPIRAL_POINTS = Array.from({ length: TAPS }, (_, k) => {
 // The turn of a pixel is an even dither of both coordinates, and another one for another radius, so that
 // the mean of pictures whose radii differ is smooth.
 const SPIRAL = `
-  if (shadowIntensity > 0.0) {
+  if (shadowRadius <= 1.0) {
+    shadow = texture2DCompare(shadowMap, shadowCoord.xy, shadowCoord.z);
+  } else if (shadowIntensity > 0.0) {
   float dither = 52.9829 * fract(dot(gl_FragCoord.xy, vec2(0.06711, 0.00584)));
   float turn = 6.2832 * fract(dither + 1.618 * shadowRadius);
   vec2 reach = shadowRadius / shadowMapSize;

@@ -4,6 +4,7 @@ import { Backdrop } from './backdrop.js';
 import { Exposure } from './exposure.js';
 import { Floor } from './floor.js';
 import { Light, REFLECTED, reflections } from './light.js';
+import type { Lighting } from './light.js';
 import { PALETTES } from './palette.js';
 import type { Theme } from './palette.js';
 import { draws_in_software, Quality } from './quality.js';
@@ -31,6 +32,7 @@ export class Stage {
   readonly quality = new Quality(() => window.devicePixelRatio);
   private drawn_in: 'software' | 'hardware' = draws_in_software() ? 'software' : 'hardware';
   private light_ = new Light();
+  private lighting: Lighting = 'simple';
   private floor = new Floor(PALETTES.light);
   private backdrop = new Backdrop(PALETTES.light);
   private exposure: Exposure;
@@ -60,7 +62,7 @@ export class Stage {
     // The renderer listens too, and first; what it loads from arrays it loads anew by itself.
     canvas.addEventListener('webglcontextrestored', () => {
       if (this.room) this.make_room();
-      if (this.lit) this.light_up(true);
+      if (this.lighting === 'whole') this.scene.environment = this.room?.texture ?? null;
       if (this.camera) this.renderer.compile(this.scene, this.camera);
       heard.lost(false);
     });
@@ -107,10 +109,15 @@ export class Stage {
     return this.renderer.getPixelRatio() !== this.quality.pixel_ratio;
   }
 
+  /** Whether pictures of what moves are drafts, quickly drawn, because the processor draws them. */
+  get drafts(): boolean {
+    return this.drawn_in === 'software' && !this.simple;
+  }
+
   /** Draws the present picture. */
   draw(camera: PerspectiveCamera): void {
     this.exposed = 0;
-    this.light_.contact = this.drawn_in === 'hardware';
+    if (this.lit) this.light_up(this.drafts ? 'quick' : 'whole');
     this.renderer.render(this.scene, camera);
     if (this.lit && this.drawn_in === 'software') this.exposure.smooth();
   }
@@ -124,14 +131,19 @@ export class Stage {
     return this.lit || this.simple;
   }
 
+  /** Whether a picture that does not change can be made finer. */
+  get exposes(): boolean {
+    return this.lights_stay && !this.fine;
+  }
+
   /** Makes a picture that does not change finer by one more exposure. */
   expose(camera: PerspectiveCamera): void {
-    if (!this.lights_stay || this.fine) return;
+    if (!this.exposes) return;
     const { width, height } = this.canvas;
+    if (this.lit) this.light_up('whole');
     const sample = this.exposed > 0 ? sample_of(this.exposed - 1) : null;
     if (sample) camera.setViewOffset(width, height, ...sample.pixel, width, height);
     this.floor.key_blur = this.light_.show(sample, EXPOSURES[this.drawn_in]);
-    this.light_.contact = true;
     this.renderer.render(this.scene, camera);
     this.exposure.add(this.exposed);
     this.exposed += 1;
@@ -160,11 +172,12 @@ export class Stage {
     this.make_room();
     await next_task();
     // Programs depend on the lights; they are linked while the simple ones go on drawing.
-    this.light_up(true);
-    this.renderer.compile(this.scene, camera);
-    this.light_up(false);
+    for (const lighting of this.drafts ? (['quick', 'whole'] as const) : (['whole'] as const)) {
+      this.light_up(lighting);
+      this.renderer.compile(this.scene, camera);
+    }
+    this.light_up('simple');
     await this.linked();
-    this.light_up(true);
     this.lit = true;
     this.heard.changed();
   }
@@ -185,9 +198,12 @@ export class Stage {
     this.room = reflections(this.renderer);
   }
 
-  private light_up(whole: boolean): void {
-    this.scene.environment = whole && this.room ? this.room.texture : null;
-    this.light_.whole = this.renderer.shadowMap.enabled = whole;
+  private light_up(lighting: Lighting): void {
+    if (this.lighting === lighting) return;
+    this.lighting = lighting;
+    this.scene.environment = lighting === 'whole' && this.room ? this.room.texture : null;
+    this.light_.lighting = lighting;
+    this.renderer.shadowMap.enabled = lighting !== 'simple';
   }
 }
 

@@ -1,7 +1,7 @@
 import { Box3, Vector3 } from 'three';
 import type { Camera, Group } from 'three';
-import type { Frame, MeshData, MeshAnnouncement, Vec3 } from '../../../proto/js/messages.js';
-import { ClothMesh } from './cloth_mesh.js';
+import type { Frame, Look, MeshData, MeshAnnouncement, Vec3 } from '../../../proto/js/messages.js';
+import { ClothMesh, levels_of } from './cloth_mesh.js';
 import type { Subject } from './director.js';
 import { Objects } from './objects.js';
 import type { ObjectHit } from './objects.js';
@@ -18,7 +18,8 @@ const CLEARANCE = 0.02; // before a point that something else hides [m]
  */
 export class WorldView {
   readonly playback: Playback;
-  readonly cloth: ClothMesh;
+  private cloth: ClothMesh; // as it is drawn now
+  private cloths: { smooth: ClothMesh; quick: ClothMesh };
   private objects: Objects;
   private drawn_circle: FabricCircle | null = null;
 
@@ -31,8 +32,13 @@ export class WorldView {
     this.playback.positions.set(data.restPositions);
     const thickness = Math.max(0, ...announcement.cloths.map((cloth) => cloth.thickness));
     this.objects = new Objects(announcement.colliders, data, thickness);
-    this.cloth = new ClothMesh(announcement.cloths, data, stage.simple, this.objects.room.bind(this.objects));
-    stage.scene.add(this.cloth.group, this.objects.group);
+    const room = this.objects.room.bind(this.objects);
+    const cloth = (quick: boolean) => new ClothMesh(announcement.cloths, data, quick, room);
+    const smooth = cloth(stage.simple);
+    const drafts = stage.drafts && levels_of(data, true) < levels_of(data, false);
+    this.cloths = { smooth, quick: drafts ? cloth(true) : smooth };
+    this.cloth = smooth;
+    stage.scene.add(smooth.group, this.objects.group);
     stage.set_floor(this.objects.ground);
     stage.light(this.bounds());
   }
@@ -73,9 +79,25 @@ export class WorldView {
     return changed;
   }
 
-  /** Prepares what depends on where one looks from. */
-  look_from(camera: Camera): void {
-    this.cloth.sort(camera);
+  /**
+   * Prepares what depends on where one looks from.
+   * @param draft whether the picture is a draft, whose cloths are drawn quickly rather than smoothly
+   */
+  look_from(camera: Camera, draft: boolean): void {
+    const { smooth, quick } = this.cloths;
+    const cloth = draft ? quick : smooth;
+    if (cloth !== this.cloth) {
+      this.stage.scene.remove(this.cloth.group);
+      this.stage.scene.add(cloth.group);
+      this.cloth = cloth;
+      cloth.update(this.playback.positions);
+    }
+    cloth.sort(camera);
+  }
+
+  /** Gives the cloths other looks. */
+  dress(looks: (Look | undefined)[]): void {
+    for (const cloth of new Set(Object.values(this.cloths))) cloth.dress(looks);
   }
 
   /** What is drawn of the world. */
@@ -128,7 +150,7 @@ export class WorldView {
   }
 
   dispose(): void {
-    this.cloth.dispose();
+    for (const cloth of new Set(Object.values(this.cloths))) cloth.dispose();
     this.objects.dispose();
     this.stage.set_floor(null);
   }
