@@ -23,6 +23,21 @@ inline constexpr double kLeastDoubledArea = 1e-14;
 /// solids that face inwards are not turned. Smaller: rounding may turn a doubled sheet.
 inline constexpr double kLeastEnclosedVolume = 1e-6;
 
+// Polygons of mesh files.
+
+/// Most corners of a polygon. More: cutting it, which takes the square of their number, takes
+/// seconds. Fewer: round faces of fine models are refused.
+inline constexpr std::size_t kMostPolygonCorners = 4096;
+
+/// Angle [rad] below which a corner is flat, and a line passes through a corner. Larger: thin
+/// polygons are cut as if their corners lay in a row. Smaller: corners in a slanting row, which the
+/// file has rounded, give slivers.
+inline constexpr double kFlatCorner = 1e-3;
+
+/// Least doubled area of a polygon, as a fraction of the square of its circumference. Larger:
+/// narrow faces have none. Smaller: the rounding of corners in a row is an area.
+inline constexpr double kLeastPolygonArea = 1e-8;
+
 // Repair of meshes.
 
 /// Passes over the degenerate triangles of a mesh. Each pass may leave others with a shorter row of

@@ -9,10 +9,11 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <span>
+#include <sstream>
 
 #include <assimp/Exporter.hpp>
 #include <assimp/Importer.hpp>
-#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
@@ -20,6 +21,7 @@
 #include "core/error.h"
 #include "core/geometry/constants.h"
 #include "core/geometry/mesh_seams.h"
+#include "core/geometry/polygon_cut.h"
 
 namespace weft {
 namespace {
@@ -149,27 +151,23 @@ std::string plain_obj(std::string_view text, const std::string& name) {
 /// Merges the meshes of a scene, and vertices at the same position.
 class Welder {
  public:
-  Welder(MeshFile& file, const std::string& name, const MeshFileLimits& limits)
-      : file_(file), name_(name), limits_(limits) {}
+  Welder(MeshFile& file, const std::string& name, const MeshFileLimits& limits, bool has_one_part)
+      : file_(file), name_(name), limits_(limits), has_one_part_(has_one_part) {}
 
   void add(const aiMesh& mesh) {
     const bool has_uv = mesh.HasTextureCoords(0);
-    std::vector<Index> place(mesh.mNumVertices, kNone);
+    place_.assign(mesh.mNumVertices, kNone);
+    std::size_t number = 0;
     for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
       const aiFace& face = mesh.mFaces[f];
-      if (face.mNumIndices != 3) continue;
-      Triangle triangle;
-      for (unsigned k = 0; k < 3; ++k) {
-        const unsigned i = face.mIndices[k];
+      if (face.mNumIndices < 3) continue;
+      const std::span<const unsigned> corners(face.mIndices, face.mNumIndices);
+      for (const unsigned i : corners) {
         if (i >= mesh.mNumVertices) throw unreadable(name_, "a face names no vertex");
-        if (place[i] == kNone) place[i] = weld(mesh, i, has_uv);
-        triangle[k] = place[i];
       }
-      add_corners(mesh, face, triangle, has_uv);
-      file_.mesh.triangles.push_back(triangle);
-      check("triangles", file_.mesh.triangles.size(), limits_.triangles);
+      add_face(mesh, corners, ++number, has_uv);
+      any_has_uv_ = any_has_uv_ || has_uv;
     }
-    any_has_uv_ = any_has_uv_ || has_uv;
   }
 
   /// A face without uv has all its corners in one place; its vertices have the uv of another face.
@@ -196,6 +194,56 @@ class Welder {
       throw DefinitionError("mesh", name_, "at most " + std::to_string(most) + " " + what);
   }
 
+  /// @param number  of the face in its mesh, from 1
+  void add_face(const aiMesh& mesh, std::span<const unsigned> corners, std::size_t number,
+                bool has_uv) {
+    if (corners.size() == 3)
+      return add_triangle(mesh, {corners[0], corners[1], corners[2]}, has_uv);
+    std::vector<Vec3d> places;
+    for (const unsigned i : corners) {
+      const aiVector3D& p = mesh.mVertices[i];
+      check_place(p);
+      places.emplace_back(p.x, p.y, p.z);
+    }
+    const PolygonCut cut = cut_polygon(places);
+    if (!cut.limit.empty())
+      throw DefinitionError("mesh", name_, cut.limit, face_name(number, places));
+    if (!cut.has_area && file_.flat_face.empty()) file_.flat_face = face_name(number, places);
+    for (const Triangle& t : cut.triangles) {
+      const auto corner = [&](std::size_t k) { return corners[static_cast<std::size_t>(t[k])]; };
+      add_triangle(mesh, {corner(0), corner(1), corner(2)}, has_uv);
+    }
+  }
+
+  /// Tells where the face is found in the file. Assimp joins the objects of a material under the
+  /// name of the last, so that names would mislead.
+  std::string face_name(std::size_t number, const std::vector<Vec3d>& places) const {
+    std::ostringstream text;
+    text << "face " << number << (has_one_part_ ? "" : " of its material");
+    text << ", with " << places.size() << " corners, the first at (" << places[0][0] << ", "
+         << places[0][1] << ", " << places[0][2] << ")";
+    return text.str();
+  }
+
+  void add_triangle(const aiMesh& mesh, const std::array<unsigned, 3>& corners, bool has_uv) {
+    Triangle triangle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      Index& place = place_[corners[k]];
+      if (place == kNone) place = weld(mesh, corners[k], has_uv);
+      triangle[k] = place;
+    }
+    add_corners(mesh, corners, triangle, has_uv);
+    file_.mesh.triangles.push_back(triangle);
+    check("triangles", file_.mesh.triangles.size(), limits_.triangles);
+  }
+
+  void check_place(const aiVector3D& p) const {
+    for (const float x : {p.x, p.y, p.z}) {
+      if (!(std::abs(x) <= kFarthestFileVertex))
+        throw unreadable(name_, "a vertex is not finite or far away");
+    }
+  }
+
   /// (u, v) of the corners as their vertices have them.
   CornerUv of_vertices(const Triangle& triangle) const {
     CornerUv corners;
@@ -205,9 +253,10 @@ class Welder {
   }
 
   /// Keeps the uv of the next triangle's corners from the first seam on.
-  void add_corners(const aiMesh& mesh, const aiFace& face, const Triangle& triangle, bool has_uv) {
+  void add_corners(const aiMesh& mesh, const std::array<unsigned, 3>& vertices,
+                   const Triangle& triangle, bool has_uv) {
     CornerUv corners = {};
-    for (unsigned k = 0; has_uv && k < 3; ++k) corners[k] = uv_of(mesh, face.mIndices[k]);
+    for (std::size_t k = 0; has_uv && k < 3; ++k) corners[k] = uv_of(mesh, vertices[k]);
     if (file_.corner_uv.empty() && corners == of_vertices(triangle)) return;
     if (file_.corner_uv.empty()) {
       for (const Triangle& earlier : file_.mesh.triangles)
@@ -222,13 +271,10 @@ class Welder {
 
   Index weld(const aiMesh& mesh, unsigned i, bool has_uv) {
     const aiVector3D& p = mesh.mVertices[i];
+    // Before the search, because NaN has no place in an order.
+    check_place(p);
     // Adding zero makes -0 and 0 equal.
     const std::array<float, 3> key = {p.x + 0.0F, p.y + 0.0F, p.z + 0.0F};
-    // Before the search, because NaN has no place in an order.
-    for (const float x : key) {
-      if (!(std::abs(x) <= kFarthestFileVertex))
-        throw unreadable(name_, "a vertex is not finite or far away");
-    }
     const auto [there, is_new] =
         places_.insert({key, static_cast<Index>(file_.mesh.positions.size())});
     if (!is_new) return there->second;
@@ -242,7 +288,9 @@ class Welder {
   MeshFile& file_;
   const std::string& name_;
   const MeshFileLimits& limits_;
+  const bool has_one_part_;
   std::map<std::array<float, 3>, Index> places_;
+  std::vector<Index> place_;  // of the present mesh's vertices
   bool any_has_uv_ = false;
 };
 
@@ -267,15 +315,12 @@ MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFi
   const std::string plain = ending == "obj" ? plain_obj(bytes, name) : std::string();
   if (ending == "obj") bytes = plain;
   Assimp::Importer importer;
-  importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE,
-                              aiPrimitiveType_POINT | aiPrimitiveType_LINE);
+  // Polygons stay whole: assimp's own triangles may reach outside them.
   const aiScene* scene = importer.ReadFileFromMemory(
-      bytes.data(), bytes.size(),
-      aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_PreTransformVertices,
-      ending.c_str());
+      bytes.data(), bytes.size(), aiProcess_PreTransformVertices, ending.c_str());
   if (!scene) throw unreadable(name, importer.GetErrorString());
   MeshFile file;
-  Welder welder(file, name, limits);
+  Welder welder(file, name, limits, scene->mNumMeshes == 1);
   for (unsigned m = 0; m < scene->mNumMeshes; ++m) welder.add(*scene->mMeshes[m]);
   welder.finish();
   if (file.mesh.triangles.empty()) throw unreadable(name, "it has no triangles");

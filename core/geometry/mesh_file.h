@@ -23,6 +23,7 @@ struct MeshFile {
   TriangleMesh mesh;
   std::vector<std::array<double, 2>> uv;  ///< one per vertex, or empty; a downward v is not flipped
   std::vector<CornerUv> corner_uv = {};   ///< by triangle; empty unless a vertex has several
+  std::string flat_face = {};             ///< names the first polygon without area, if any
 };
 
 /// Largest accepted file; checked before and after parsing.
@@ -36,9 +37,9 @@ struct MeshFileLimits {
 bool is_mesh_file_name(std::string_view name);
 
 /// Reads OBJ, PLY, STL or GLB. All meshes of the file are merged, with their nodes' transformations
-/// applied; polygons are triangulated, points and lines dropped; vertices at exactly the same
-/// position are merged, in the order of first use in the file, and those of seams that rounding has
-/// opened (mesh_seams.h). Their uv is that of the first; where
+/// applied; polygons are cut into triangles (polygon_cut.h), points and lines dropped; vertices at
+/// exactly the same position are merged, in the order of first use in the file, and those of seams
+/// that rounding has opened (mesh_seams.h). Their uv is that of the first; where
 /// others have another, at a seam, `corner_uv` keeps what each triangle has at its corners. A face
 /// without uv in a file with some has all three corners in one place there.
 ///
@@ -48,7 +49,8 @@ bool is_mesh_file_name(std::string_view name);
 /// @param bytes  the whole file
 /// @param name   for its ending and for errors
 /// Throws DefinitionError on field "mesh": another extension, too large, unreadable, a vertex that
-/// is not finite or farther than 1e6, or no triangles. validate(TriangleMesh) checks areas.
+/// is not finite or farther than 1e6, a polygon that cannot be cut, or no triangles.
+/// validate(TriangleMesh) checks areas.
 MeshFile read_mesh(std::string_view bytes, const std::string& name,
                    const MeshFileLimits& limits = {});
 

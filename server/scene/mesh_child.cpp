@@ -47,11 +47,14 @@ class Take {
     rest_.remove_prefix(sizeof value);
     return true;
   }
-  bool empty() const { return rest_.empty(); }
+  std::string_view rest() const { return rest_; }
 
  private:
   std::string_view rest_;
 };
+
+/// Longest name of a face that the child tells [bytes].
+constexpr std::size_t kLongestFace = 200;
 
 std::string packed(const MeshFile& file) {
   std::string out(1, kGood);
@@ -64,7 +67,7 @@ std::string packed(const MeshFile& file) {
   for (const Triangle& t : file.mesh.triangles) put(out, t);
   for (const auto& uv : file.uv) put(out, uv);
   for (const CornerUv& corners : file.corner_uv) put(out, corners);
-  return out;
+  return out + file.flat_face.substr(0, kLongestFace);
 }
 
 bool unpack(std::string_view bytes, const MeshFileLimits& limits, MeshFile& file) {
@@ -90,7 +93,8 @@ bool unpack(std::string_view bytes, const MeshFileLimits& limits, MeshFile& file
     if (!take(point)) return false;
   for (CornerUv& corners : file.corner_uv)
     if (!take(corners)) return false;
-  return take.empty();
+  file.flat_face = take.rest();
+  return file.flat_face.size() <= kLongestFace;
 }
 
 pid_t spawn_child(const std::string& path, int input, int output) {
@@ -156,7 +160,7 @@ MeshFile read_mesh_apart(const std::string& path, const MeshFileLimits& limits) 
   const pid_t child = spawn_child(path, file.number, to_parent.number);
   if (child < 0) throw refused(path, "a file", "no process can be made for it");
   to_parent.close_now();
-  const std::size_t most = 64 + limits.vertices * 40 + limits.triangles * 60;
+  const std::size_t most = 64 + kLongestFace + limits.vertices * 40 + limits.triangles * 60;
   std::string answer;
   const bool ended = read_all(from_child.number, most, answer);
   if (!ended) kill(child, SIGKILL);

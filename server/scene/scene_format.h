@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/cloth/fabric_presets.h"
+#include "core/error.h"
 #include "core/geometry/mesh_file.h"
 #include "core/world/world_def.h"
 
@@ -124,6 +125,9 @@ void describe_cloth(Io& io, ClothDef& cloth) {
                 ClothMesh& mesh = *cloth.mesh;
                 describe_placement(inner, mesh.placement);
                 inner.mesh(mesh.placement, [&](const MeshFile& file) {
+                  if (!file.flat_face.empty())
+                    throw DefinitionError("mesh", mesh.placement.source, "faces with an area",
+                                          file.flat_face);
                   mesh.mesh = placed(file.mesh, mesh.placement);
                   mesh.uv = file.uv;
                   mesh.corner_uv = file.corner_uv;

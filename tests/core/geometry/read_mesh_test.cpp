@@ -212,6 +212,55 @@ TEST_CASE("polygons are cut into triangles of the same area; points and lines ar
   CHECK(surface_area(file.mesh) == Approx(1));
 }
 
+TEST_CASE("faces of any number of corners keep their order, vertices and uv") {
+  // A triangle, an L whose first diagonal would pass through its inner corner, and a square.
+  const std::string vertices =
+      "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nv -1 0 0\nv 2 2 0\n"
+      "vt 0 0\nvt 2 0\nvt 2 1\nvt 1 1\nvt 1 2\nvt 0 2\nvt -1 0\nvt 2 2\n";
+  const std::string faces = "f 1/1 6/6 7/7\nf 1/1 2/2 3/3 4/4 5/5 6/6\nl 1 8\nf 4/4 3/3 8/8 5/5\n";
+  const MeshFile file = read_mesh(vertices + faces, "l.obj");
+  REQUIRE(file.mesh.triangles.size() == 7);
+  CHECK(file.mesh.triangles[0] == Triangle{0, 1, 2});
+  CHECK(file.mesh.positions.size() == 8);
+  CHECK(surface_area(file.mesh) == Approx(1 + 3 + 1));
+  for (std::size_t t = 1; t < 7; ++t)
+    CHECK(unit_normal(file.mesh, static_cast<Index>(t))[2] > 0.999);
+  CHECK(file.corner_uv.empty());
+  for (std::size_t i = 0; i < 8; ++i) {
+    CHECK(file.uv[i][0] == file.mesh.positions[i][0]);
+    CHECK(file.uv[i][1] == file.mesh.positions[i][1]);
+  }
+}
+
+TEST_CASE("a polygon that cannot be cut is refused by the number and place of its face") {
+  const auto hint = [](const std::string& face, const std::string& head = {}) {
+    const std::string bytes = "v 0 0 0\nv 2 0 0\nv 2 2 0\nv 0 2 0\nv 1 5 0\nv 7 0 0\n" + head +
+                              "f 1 2 3\nl 1 2\n" + face + "\nf 1 3 4\n";
+    try {
+      read_mesh(bytes, "sheet.obj");
+    } catch (const DefinitionError& error) {
+      CHECK(error.limit == "polygons whose sides do not cross");
+      return error.hint;
+    }
+    return std::string("accepted");
+  };
+  CHECK(hint("f 2 1 4 3") == "accepted");
+  CHECK(hint("f 2 4 3 5 1", "o towel\n") == "face 2, with 5 corners, the first at (2, 0, 0)");
+  CHECK(hint("o box\nf 6 4 2 3") == "face 2, with 4 corners, the first at (7, 0, 0)");
+  // One with uv is not beside those without.
+  CHECK(hint("vt 0 0\nf 1 2 3 4\no box\nf 6/1 4/1 2/1 3/1") ==
+        "face 1 of its material, with 4 corners, the first at (7, 0, 0)");
+}
+
+TEST_CASE("a polygon without area is told, and its triangles are flat") {
+  const MeshFile file =
+      read_mesh("v 0 0 0\nv 1 0 0\nv 2 0 0\nv 3 0 0\nv 0 1 0\nf 1 4 5\nf 1 2 3 4\n", "row.obj");
+  CHECK(file.mesh.triangles.size() == 3);
+  CHECK(surface_area(file.mesh) == Approx(1.5));
+  CHECK(file.flat_face == "face 2, with 4 corners, the first at (0, 0, 0)");
+  CHECK(read_mesh(as_obj(brick()), "brick.obj").flat_face.empty());
+}
+
 TEST_CASE("numbers of an OBJ may lack the digit before their point, and its lines may go on") {
   const MeshFile whole =
       read_mesh("v 0 0 0.5\nv -0.5 0.25 0\nv 0 1 0\nv 5 5 5\nf 1 2 3\n", "a.obj");
