@@ -115,6 +115,8 @@ class Reader {
   template <class Describe>
   void object(const char* name, const char*, Describe&& describe) {
     const Json* node = find(name);
+    if (node && node->is_string() && std::string_view(name) == "mesh")
+      throw wrong(at(name), *node, "an object {...}", R"({"source": )" + shown_json(*node) + "}");
     static const Json empty = Json::object();
     Reader inner(node ? *node : empty, at(name), meshes_);
     describe(inner);

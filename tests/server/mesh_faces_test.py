@@ -123,6 +123,15 @@ class Faces(unittest.TestCase):
         done, _ = simulate(disc(4096), cloth=False)
         self.assertEqual(done.returncode, 0, done.stderr)
 
+    def test_a_mesh_given_by_its_name_alone_is_told_how_to_give_it(self):
+        with tempfile.TemporaryDirectory(prefix="weft_faces_") as folder:
+            path = Path(folder, "scene.json")
+            path.write_text('{"cloths": [{"form": "mesh", "mesh": "towel.obj"}]}', encoding="ascii")
+            done = subprocess.run([PROGRAM, "simulate", "--scene", path], capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 2)
+        self.assertIn('cloths[0].mesh = "towel.obj": allowed is an object {...} ({"source": "towel.obj"})',
+                      done.stderr)
+
 
 if __name__ == "__main__":
     main()
