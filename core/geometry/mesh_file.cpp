@@ -37,24 +37,56 @@ std::string format_of(const std::string& path) {
   throw DefinitionError("out", path, "a name that ends in .obj or .ply");
 }
 
-std::unique_ptr<aiMesh> to_assimp(const TriangleMesh& mesh) {
+aiVector3D to_assimp(const Vec3d& p) {
+  return {static_cast<ai_real>(p[0]), static_cast<ai_real>(p[1]), static_cast<ai_real>(p[2])};
+}
+
+/// Without vertices.
+std::unique_ptr<aiMesh> named_faces(const std::string& name, std::size_t triangles) {
   auto result = std::make_unique<aiMesh>();
+  result->mName = name;
   result->mPrimitiveTypes = aiPrimitiveType_TRIANGLE;
-  result->mNumVertices = static_cast<unsigned>(mesh.positions.size());
-  result->mVertices = new aiVector3D[mesh.positions.size()];
-  for (std::size_t i = 0; i < mesh.positions.size(); ++i) {
-    const Vec3d& p = mesh.positions[i];
-    result->mVertices[i] = aiVector3D(static_cast<ai_real>(p[0]), static_cast<ai_real>(p[1]),
-                                      static_cast<ai_real>(p[2]));
-  }
-  result->mNumFaces = static_cast<unsigned>(mesh.triangles.size());
-  result->mFaces = new aiFace[mesh.triangles.size()];
-  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+  result->mNumFaces = static_cast<unsigned>(triangles);
+  result->mFaces = new aiFace[triangles];
+  for (std::size_t t = 0; t < triangles; ++t) {
     result->mFaces[t].mNumIndices = 3;
     result->mFaces[t].mIndices = new unsigned[3];
-    for (std::size_t k = 0; k < 3; ++k) {
-      assert(static_cast<std::size_t>(mesh.triangles[t][k]) < mesh.positions.size());
+  }
+  return result;
+}
+
+/// Each vertex once, without uv.
+std::unique_ptr<aiMesh> by_vertices(const NamedMesh& named) {
+  const TriangleMesh& mesh = named.mesh;
+  auto result = named_faces(named.name, mesh.triangles.size());
+  result->mNumVertices = static_cast<unsigned>(mesh.positions.size());
+  result->mVertices = new aiVector3D[mesh.positions.size()];
+  for (std::size_t i = 0; i < mesh.positions.size(); ++i)
+    result->mVertices[i] = to_assimp(mesh.positions[i]);
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k)
       result->mFaces[t].mIndices[k] = static_cast<unsigned>(mesh.triangles[t][k]);
+  }
+  return result;
+}
+
+/// A vertex for each corner of a triangle, with its uv.
+std::unique_ptr<aiMesh> by_corners(const NamedMesh& named) {
+  const TriangleMesh& mesh = named.mesh;
+  const std::size_t corners = 3 * mesh.triangles.size();
+  auto result = named_faces(named.name, mesh.triangles.size());
+  result->mNumVertices = static_cast<unsigned>(corners);
+  result->mVertices = new aiVector3D[corners];
+  result->mTextureCoords[0] = new aiVector3D[corners];
+  result->mNumUVComponents[0] = 2;
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::size_t i = 3 * t + k;
+      const auto& [u, v] = named.corner_uv[t][k];
+      result->mVertices[i] =
+          to_assimp(mesh.positions[static_cast<std::size_t>(mesh.triangles[t][k])]);
+      result->mTextureCoords[0][i] = to_assimp(Vec3d(u, v, 0));
+      result->mFaces[t].mIndices[k] = static_cast<unsigned>(i);
     }
   }
   return result;
@@ -328,17 +360,21 @@ MeshFile read_mesh(std::string_view bytes, const std::string& name, const MeshFi
   return file;
 }
 
-std::string encode_mesh(const TriangleMesh& mesh, const std::string& name) {
+std::string encode_meshes(const std::vector<NamedMesh>& meshes, const std::string& name) {
   const std::string format = format_of(name);
   // Assimp's scene owns its members.
   aiScene scene;
   scene.mRootNode = new aiNode();
   scene.mMaterials = new aiMaterial* [1] { new aiMaterial() };
   scene.mNumMaterials = 1;
-  scene.mMeshes = new aiMesh* [1] { to_assimp(mesh).release() };
-  scene.mNumMeshes = 1;
-  scene.mRootNode->mMeshes = new unsigned[1]{0};
-  scene.mRootNode->mNumMeshes = 1;
+  scene.mNumMeshes = scene.mRootNode->mNumMeshes = static_cast<unsigned>(meshes.size());
+  scene.mMeshes = new aiMesh*[meshes.size()];
+  scene.mRootNode->mMeshes = new unsigned[meshes.size()];
+  for (unsigned m = 0; m < meshes.size(); ++m) {
+    const bool has_uv = format != "ply" && !meshes[m].corner_uv.empty();
+    scene.mMeshes[m] = (has_uv ? by_corners(meshes[m]) : by_vertices(meshes[m])).release();
+    scene.mRootNode->mMeshes[m] = m;
+  }
   Assimp::Exporter exporter;
   const aiExportDataBlob* const blob = exporter.ExportToBlob(&scene, format);
   if (!blob) throw DefinitionError("out", name, "a mesh that fits", exporter.GetErrorString());

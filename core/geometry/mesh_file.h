@@ -12,11 +12,18 @@
 
 namespace weft {
 
-/// Encodes a mesh as Wavefront OBJ or PLY, by the extension of its name (".obj" or ".ply").
-/// Positions keep float precision. PLY keeps the order of the vertices; OBJ lists them in the order
-/// of first use by the triangles, and merges those at exactly the same position. Throws
-/// DefinitionError on another extension.
-std::string encode_mesh(const TriangleMesh& mesh, const std::string& name);
+/// A mesh of a file with several.
+struct NamedMesh {
+  std::string name;
+  TriangleMesh mesh;
+  std::vector<CornerUv> corner_uv = {};  ///< by triangle, or empty
+};
+
+/// Encodes meshes as Wavefront OBJ or PLY, by the extension of the file's name (".obj" or ".ply").
+/// Numbers keep float precision. PLY keeps the order of the vertices, without names and uv; OBJ
+/// lists them in the order of first use by the triangles, and merges those at exactly the same
+/// position. Each mesh is a group `g` of an OBJ. Throws DefinitionError on another extension.
+std::string encode_meshes(const std::vector<NamedMesh>& meshes, const std::string& name);
 
 /// Content of a mesh file.
 struct MeshFile {

@@ -11,6 +11,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/cloth/cloth_meshes.h"
 #include "core/diagnostics/strain.h"
 #include "core/geometry/mesh_file.h"
 #include "core/scenes/scenes.h"
@@ -208,14 +209,6 @@ Json summary(const SimulateOptions& options, const World<Real>& world, const Mea
       {"notices", notices}};
 }
 
-template <class Real>
-TriangleMesh cloth_mesh(const World<Real>& world) {
-  TriangleMesh mesh;
-  for (const auto& x : world.state().x) mesh.positions.push_back(x.template cast<double>());
-  mesh.triangles = world.model().triangles;
-  return mesh;
-}
-
 /// Reports crossings on standard error.
 /// @return exit code: failure if any came after the scene's grace time
 template <class Real>
@@ -322,7 +315,9 @@ int simulate_in(const SimulateOptions& options) {
   else
     print_table(result, "");
   // The summary is printed even if the file cannot be written.
-  if (!options.out.empty()) write_file(options.out, encode_mesh(cloth_mesh(world), options.out));
+  if (!options.out.empty())
+    write_file(options.out,
+               encode_meshes(cloth_meshes(world.model(), world.state().x), options.out));
   return warn_of_crossings(measurement);
 }
 

@@ -25,7 +25,7 @@ struct Folder {
 };
 
 void write_mesh(const TriangleMesh& mesh, const fs::path& path) {
-  std::ofstream(path, std::ios::binary) << encode_mesh(mesh, path);
+  std::ofstream(path, std::ios::binary) << encode_meshes({{"one", mesh}}, path);
 }
 
 TriangleMesh read_obj(const fs::path& path) {
@@ -123,7 +123,7 @@ TEST_CASE("a name without a known ending is refused as `out`") {
   for (const char* name : {"form.stl", "form", ".obj", "form.obj.gz"}) {
     INFO(name);
     try {
-      encode_mesh(mesh, name);
+      encode_meshes({{"one", mesh}}, name);
       FAIL("accepted");
     } catch (const DefinitionError& error) {
       CHECK(error.field == "out");
