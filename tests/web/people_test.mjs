@@ -3,7 +3,7 @@ import { mkdtemp, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test, { after, before } from 'node:test';
-import { launch_browser, open_page, read, until } from './support/browser.mjs';
+import { camera_at_rest, launch_browser, open_page, read, until } from './support/browser.mjs';
 import { bounded, CALM, point_at_cloth } from './support/default_scene.mjs';
 import { start_server } from './support/server.mjs';
 
@@ -103,27 +103,50 @@ test("another's cursor is drawn on the cloth with a name", bounded, () =>
     await until(async () => (await read(ada, 'company')).cursors.length === 0, 'it goes with the mouse');
   }));
 
+const eye = async (page) => (await read(page, 'camera')).position;
+const apart = async (one, other) => {
+  const [a, b] = [await eye(one), await eye(other)];
+  return Math.hypot(...a.map((x, axis) => x - b[axis]));
+};
+const follows = (page) => read(page, 'company').then((company) => company.follows);
+
+test('whom a camera that rests is shown to sees it at once, among many and as a newcomer too', bounded, () =>
+  with_two(async (ada, ben) => {
+    const others = [];
+    for (let k = 0; k < 12; k++) others.push(await server.script(`pupil ${k}`, { token: LOOKER }));
+    await ada.locator('#view').focus();
+    for (let k = 0; k < 3; k++) await ada.keyboard.press('ArrowLeft');
+    await camera_at_rest(ada);
+    assert.ok((await apart(ada, ben)) > 0.1);
+    await open_list(ada);
+    await ada.getByRole('button', { name: 'Bring all to my view' }).click();
+    await until(async () => (await apart(ada, ben)) < 2e-3, 'Ben sees what Ada sees');
+    const carl = await enter(LOOKER);
+    assert.ok((await apart(ada, carl)) > 0.1, 'who comes later sees by its own');
+    await open_list(carl);
+    await carl.getByRole('button', { name: 'Follow Ada' }).click();
+    await until(async () => (await apart(ada, carl)) < 2e-3, 'until it follows');
+    assert.deepEqual(carl.complaints, []);
+    await carl.context().close();
+    for (const other of others) other.close();
+  }));
+
 test('a page that follows sees what the other sees, until its viewer touches it', bounded, () =>
   with_two(async (ada, ben) => {
     await open_list(ada);
     await ada.getByRole('button', { name: 'Bring all to my view' }).click();
     await close_list(ada);
-    const follows = (page) => read(page, 'company').then((company) => company.follows);
     await until(async () => (await follows(ben)) === (await read(ada, 'viewer')), 'Ben is brought along');
     const box = await ada.locator('#view').boundingBox();
     await ada.mouse.move(box.x + 8, box.y + box.height / 2);
     await ada.mouse.down();
     await ada.mouse.move(box.x + 90, box.y + box.height / 2 + 20, { steps: 6 });
     await ada.mouse.up();
-    const gap = async () => {
-      const [a, b] = [await read(ada, 'camera'), await read(ben, 'camera')];
-      return Math.hypot(...a.position.map((x, axis) => x - b.position[axis]));
-    };
-    await until(async () => (await gap()) < 2e-3, 'both see from the same place');
+    await until(async () => (await apart(ada, ben)) < 2e-3, 'both see from the same place');
     await ben.mouse.move(box.x + 8, box.y + box.height / 2);
     await ben.mouse.wheel(0, -300);
     await until(async () => (await follows(ben)) === 0, 'Ben has left');
-    await until(async () => (await gap()) > 0.02, 'and sees by his own');
+    await until(async () => (await apart(ada, ben)) > 0.02, 'and sees by his own');
   }));
 
 test('a link that an operator makes lets its guest look, and shows as a QR code', bounded, async () => {

@@ -21,6 +21,7 @@ interface Actions {
 /** Where others point and look, and where this viewer points. */
 export class Company {
   private cursors = new Map<number, { place: Vec3; until: number }>();
+  private cameras = new Map<number, Camera>(); // as last told; one may come before it is followed
   private told: Vec3 | null = null;
   private told_at = 0; // [s]
   /** By whose camera this viewer sees; 0: its own. */
@@ -31,6 +32,7 @@ export class Company {
     private actions: Actions,
   ) {
     client.on('presence', ({ viewers }) => {
+      const last = this.seen;
       for (const { viewer, cursor, away, camera, follows } of viewers) {
         if (viewer === client.viewer) {
           if (follows !== undefined) this.follows = follows;
@@ -38,21 +40,30 @@ export class Company {
         }
         if (cursor) this.cursors.set(viewer, { place: cursor, until: now() + SHOWN });
         if (away) this.cursors.delete(viewer);
-        if (camera && viewer === this.follows) this.actions.see(camera);
+        if (camera) this.cameras.set(viewer, camera);
       }
+      const { seen } = this;
+      if (seen && seen !== last) this.actions.see(seen);
       this.actions.changed();
     });
     client.on('roster', ({ viewers }) => {
       const here = new Set(viewers.map(({ id }) => id));
-      for (const viewer of [...this.cursors.keys()]) if (!here.has(viewer)) this.cursors.delete(viewer);
+      for (const told of [this.cursors, this.cameras])
+        for (const viewer of [...told.keys()]) if (!here.has(viewer)) told.delete(viewer);
     });
     client.on('status', ({ phase }) => {
       if (phase === 'open') return;
       this.cursors.clear();
+      this.cameras.clear();
       this.told = null;
       this.follows = 0;
       this.actions.changed();
     });
+  }
+
+  /** The camera by which this viewer sees; undefined: its own. */
+  private get seen(): Camera | undefined {
+    return this.cameras.get(this.follows);
   }
 
   /** What others point at, the newest first. */
