@@ -10,6 +10,7 @@ import { start_server } from './support/server.mjs';
 // Several people with one cloth: who may hold it, what each points at, and by whose camera they see.
 
 const LOOKER = 'look-0123456789abcdef';
+const PUPIL = 'pupil-0123456789abcdef'; // of a whole class
 const OPERATOR = 'operate-0123456789abcdef';
 
 let browser;
@@ -19,7 +20,7 @@ before(async () => {
   browser = await launch_browser();
   folder = await mkdtemp(join(tmpdir(), 'weft-people-'));
   const tokens = join(folder, 'tokens');
-  await writeFile(tokens, `viewer ${LOOKER} Ben\noperator ${OPERATOR} Ada\n`, { mode: 0o600 });
+  await writeFile(tokens, `viewer ${LOOKER} Ben\nviewer ${PUPIL}\noperator ${OPERATOR} Ada\n`, { mode: 0o600 });
   server = await start_server([...CALM, '--paused', '--tokens', tokens]);
 });
 after(async () => {
@@ -68,6 +69,71 @@ test('an operator says who holds by the list of people, and the page of who may 
     await open_list(ben);
     assert.equal(await ben.getByRole('checkbox').count(), 0);
     assert.ok(!(await ben.getByRole('button', { name: 'Others watch' }).isVisible()));
+  }));
+
+/** Scripts that come after two pages. */
+const class_of = (count) =>
+  Promise.all(Array.from({ length: count }, (_, k) => server.script(`pupil ${k}`, { token: PUPIL })));
+
+test('that everybody holds is shown as pressed only if it is so, and pressing it makes it so', bounded, () =>
+  with_two(async (ada) => {
+    const everybody = ada.getByRole('button', { name: 'Everybody holds' });
+    const one_each = ada.getByRole('button', { name: 'One hand each' });
+    const shows = (button, pressed) =>
+      until(async () => (await button.getAttribute('aria-pressed')) === pressed, `${pressed}`);
+    await open_list(ada);
+    await everybody.click(); // who was muted by another test holds again
+    const muted = ada.getByRole('checkbox', { name: 'Ben may hold' });
+    await muted.check();
+    await shows(everybody, 'true');
+    await muted.uncheck();
+    await shows(everybody, 'mixed');
+    assert.ok(await ada.getByText(/^1 of 2 may hold\. Press “Everybody holds”/).isVisible());
+    await one_each.click();
+    await shows(one_each, 'mixed');
+    await shows(everybody, 'false');
+    await muted.check();
+    await shows(one_each, 'true');
+    assert.ok(!(await ada.getByText(/may hold\. Press/).isVisible()));
+    await everybody.click();
+    await shows(everybody, 'true');
+  }));
+
+test('newcomers to a crowd are not counted as holding until an operator lets all hold', bounded, async () => {
+  const own = await start_server([...CALM, '--paused', '--tokens', join(folder, 'tokens')]);
+  const ada = await open_page(browser, `${own.url}#token=${OPERATOR}`);
+  const others = [];
+  for (let k = 0; k < 6; k++) others.push(await own.script(`pupil ${k}`, { token: PUPIL }));
+  await open_list(ada);
+  await until(() => ada.getByText(/^3 of 7 may hold\./).isVisible(), 'it is told');
+  const everybody = ada.getByRole('button', { name: 'Everybody holds' });
+  assert.equal(await everybody.getAttribute('aria-pressed'), 'mixed');
+  await everybody.click();
+  await until(async () => (await everybody.getAttribute('aria-pressed')) === 'true', 'all hold');
+  assert.deepEqual(ada.complaints, []);
+  for (const other of others) other.close();
+  await ada.context().close();
+  await own.stop();
+});
+
+test('everybody in a crowd is in the list, and the last can be muted and given a hand', bounded, () =>
+  with_two(async (ada) => {
+    const others = await class_of(60);
+    await open_list(ada);
+    const rows = ada.getByRole('list', { name: 'People' }).getByRole('listitem');
+    await until(async () => (await rows.count()) === 62, 'all are listed');
+    await ada.getByRole('button', { name: 'Everybody holds' }).click();
+    const last = rows.last().getByRole('checkbox');
+    await until(() => last.isChecked());
+    await last.uncheck();
+    const name = await rows.last().locator('.viewer-name').textContent();
+    const mute_told = async (hand) => (await others[0].query('roster')).find((one) => one.name === name).hand === hand;
+    await until(() => mute_told(false), 'the server has muted it');
+    await last.check();
+    await until(() => mute_told(true), 'and given it a hand');
+    // Scrolled by themselves: the links are in sight as before.
+    await ada.getByRole('button', { name: 'Link to look' }).click({ trial: true });
+    for (const other of others) other.close();
   }));
 
 test('an operator that may not hold gives itself a hand by one click', bounded, () =>

@@ -3,7 +3,6 @@ import type { State, Viewer } from '../../../proto/js/messages.js';
 import { late_styles } from './late_styles.js';
 import type { People } from './people.js';
 
-const MOST_SHOWN = 40;
 const POLICIES: [State['policy'], string][] = [
   ['everybody', 'Everybody holds'],
   ['one_hand', 'One hand each'],
@@ -24,7 +23,9 @@ export const styles = () => late_styles('people.css');
 /** Who is here, who may hold the cloth, and links that let others in. */
 export class PeopleList {
   private policies = make('div', 'policies');
+  private exceptions = make('p', 'exceptions');
   private rows = make('ul', 'rows');
+  private made = new Map<number, { told: string; row: HTMLElement }>(); // the rows, by their viewers
   private links = make('div', 'links');
   private link = make('div', 'link'); // the one that was made last
   private room = ''; // for which it was made
@@ -38,7 +39,7 @@ export class PeopleList {
     this.policies.setAttribute('role', 'group');
     this.policies.setAttribute('aria-label', 'Who may hold the cloth');
     this.rows.setAttribute('aria-label', 'People');
-    root.replaceChildren(this.policies, this.rows, this.links);
+    root.replaceChildren(this.policies, this.exceptions, this.rows, this.links);
     this.make_links();
   }
 
@@ -53,21 +54,42 @@ export class PeopleList {
     const operates = people.viewers.find(({ id }) => id === people.own)?.role !== 'viewer';
     this.policies.hidden = this.links.hidden = !operates;
     this.policies.replaceChildren(...this.policy_buttons(people), this.lead_button());
-    const others = [...people.viewers].sort((a, b) => Number(b.id === people.own) - Number(a.id === people.own));
-    this.rows.replaceChildren(...others.slice(0, MOST_SHOWN).map((one) => this.row(one, people, operates)));
-    if (focus) this.rows.parentElement?.querySelector<HTMLElement>(`[data-key="${focus}"]`)?.focus();
+    this.tell_exceptions(people, operates);
+    const own_first = [...people.viewers].sort((a, b) => Number(b.id === people.own) - Number(a.id === people.own));
+    this.made = new Map(own_first.map((one) => [one.id, this.made_row(one, people, operates)]));
+    this.rows.replaceChildren(...[...this.made.values()].map(({ row }) => row));
+    if (focus) this.rows.parentElement?.querySelector<HTMLElement>(`[data-key="${focus}"]`)?.focus({ preventScroll: true });
   }
 
-  private policy_buttons({ policy }: People): HTMLElement[] {
+  /** A policy that is not so for some is half pressed. */
+  private policy_buttons({ policy, viewers }: People): HTMLElement[] {
+    const partly = policy !== 'watch' && viewers.some(({ hand }) => !hand);
     return POLICIES.map(([value, words]) => {
       const button = this.button(`policy-${value}`, words, () => this.client.policy(value));
-      button.setAttribute('aria-pressed', String(policy === value));
+      button.setAttribute('aria-pressed', policy !== value ? 'false' : partly ? 'mixed' : 'true');
       return button;
     });
   }
 
+  /** Newcomers to a crowd wait for a hand whatever the policy, and who was muted has none. */
+  private tell_exceptions({ policy, viewers }: People, operates: boolean): void {
+    const holding = viewers.filter(({ hand }) => hand).length;
+    this.exceptions.hidden = !operates || policy === 'watch' || holding === viewers.length;
+    const words = POLICIES.find(([value]) => value === policy)![1];
+    this.exceptions.textContent =
+      `${holding} of ${viewers.length} may hold. Press “${words}” to let newcomers hold too; ` +
+      `who was muted holds again by the box beside the name.`;
+  }
+
   private lead_button(): HTMLElement {
     return this.button('lead', 'Bring all to my view', () => this.client.lead());
+  }
+
+  /** A row as it was made last, if nothing of it has changed. */
+  private made_row(viewer: Viewer, people: People, operates: boolean): { told: string; row: HTMLElement } {
+    const told = JSON.stringify([known_of(viewer), viewer.id === people.own, people.follows === viewer.id, operates]);
+    const made = this.made.get(viewer.id);
+    return made?.told === told ? made : { told, row: this.row(viewer, people, operates) };
   }
 
   private row(viewer: Viewer, { own, follows }: People, operates: boolean): HTMLElement {
@@ -96,8 +118,9 @@ export class PeopleList {
     box.dataset.key = `hand-${id}`;
     box.setAttribute('aria-label', `${name} may hold`);
     box.addEventListener('change', () => {
-      this.told = ''; // shown anew whatever the answer
-      this.tools.attempt(box.checked ? this.client.giveHand(id) : this.client.mute(id));
+      const answer = box.checked ? this.client.giveHand(id) : this.client.mute(id);
+      this.tools.attempt(answer);
+      answer.catch(() => (box.checked = hand)); // if refused, it is as it was
     });
     label.append(box, 'holds');
     return label;
