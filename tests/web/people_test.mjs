@@ -3,8 +3,8 @@ import { mkdtemp, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test, { after, before } from 'node:test';
-import { camera_at_rest, launch_browser, open_page, read, until } from './support/browser.mjs';
-import { bounded, CALM, point_at_cloth } from './support/default_scene.mjs';
+import { camera_at_rest, done, launch_browser, open_page, read, until } from './support/browser.mjs';
+import { bounded, CALM, point_at_cloth, show_controls } from './support/default_scene.mjs';
 import { start_server } from './support/server.mjs';
 
 // Several people with one cloth: who may hold it, what each points at, and by whose camera they see.
@@ -150,6 +150,36 @@ test('an operator that may not hold gives itself a hand by one click', bounded, 
     await until(async () => !(await offer.isVisible()), 'it goes with the hand');
     await open_list(ada);
     await until(() => own.isChecked(), 'the list shows it');
+  }));
+
+test('a control whose command is refused shows the value of the server again', bounded, () =>
+  with_two(async (ada, ben) => {
+    await show_controls(ben);
+    for (const [name, key] of [['Wind', 'End'], ['Gravity', 'Home'], ['Speed', 'Home']]) {
+      const slider = ben.getByRole('slider', { name });
+      const shown = async () => [await slider.getAttribute('aria-valuetext'), await slider.inputValue()];
+      const before = await shown();
+      await slider.focus();
+      await ben.keyboard.press(key);
+      await until(() => ben.locator('#toast').isVisible(), 'the refusal is told');
+      await done(ben);
+      await until(async () => String(await shown()) === String(before), `${name} is as it was`);
+    }
+  }));
+
+test('what the server tells right after a slider was moved is shown', bounded, () =>
+  with_two(async (ada) => {
+    const script = await server.script('script', { token: OPERATOR });
+    const before = await script.query('state');
+    await show_controls(ada);
+    const wind = ada.getByRole('slider', { name: 'Wind' });
+    await wind.focus();
+    await ada.keyboard.press('End');
+    await until(async () => Math.abs(Math.hypot(...(await script.query('state')).wind) - 10) < 1e-6, 'it is moved');
+    await script.set({ wind: [3, 0, 0] });
+    await until(async () => (await wind.getAttribute('aria-valuetext')) === '3.0 m/s', 'the value of another');
+    await script.set({ wind: before.wind });
+    script.close();
   }));
 
 test("another's cursor is drawn on the cloth with a name", bounded, () =>

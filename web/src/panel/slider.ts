@@ -1,7 +1,7 @@
 import { element } from './element.js';
 
 const SEND_INTERVAL = 60; // between values of a moving slider [ms]
-const QUIET_TIME = 600; // in which the state does not set a slider just moved [ms]
+const QUIET_TIME = 600; // in which what the server tells does not set a slider just moved [ms]
 
 /** How a slider's place and a value belong together, and how the value is written. */
 export interface Scale {
@@ -32,23 +32,25 @@ export class Slider {
   private input: HTMLInputElement;
   private output: HTMLElement;
   private timer = 0;
-  private moved_at = -Infinity;
+  private quiet = 0; // a timer, while what the server tells waits
+  private told = 0; // by the server
+  private news = false; // told in the quiet time, and not shown
 
   constructor(
     id: string,
     private scale: Scale,
-    private send: (value: number) => void,
+    private send: (value: number) => Promise<unknown>,
   ) {
     this.input = element<HTMLInputElement>(id);
     this.output = element(`${id}-value`);
     this.input.addEventListener('input', () => this.moved());
   }
 
-  /** Shows the server's present value. */
+  /** Shows the server's present value; that of a slider just moved a little later. */
   show(value: number): void {
-    if (performance.now() - this.moved_at < QUIET_TIME) return;
-    this.input.value = String(this.scale.place(value));
-    this.write(value);
+    this.told = value;
+    this.news = this.quiet > 0;
+    if (!this.news) this.show_told();
   }
 
   /** Moves by steps of the slider, as a key does. */
@@ -63,13 +65,26 @@ export class Slider {
   }
 
   private moved(): void {
-    this.moved_at = performance.now();
+    window.clearTimeout(this.quiet);
+    this.quiet = window.setTimeout(() => this.end_quiet(), QUIET_TIME);
     this.write(this.value);
     if (this.timer) return;
     this.timer = window.setTimeout(() => {
       this.timer = 0;
-      this.send(this.value);
+      this.send(this.value).catch(() => this.end_quiet(true)); // refused, it is as it was
     }, SEND_INTERVAL);
+  }
+
+  private end_quiet(refused = false): void {
+    window.clearTimeout(this.quiet);
+    this.quiet = 0;
+    if (refused || this.news) this.show_told();
+  }
+
+  private show_told(): void {
+    this.news = false;
+    this.input.value = String(this.scale.place(this.told));
+    this.write(this.told);
   }
 
   private write(value: number): void {

@@ -148,7 +148,8 @@ export class Toolbar {
     if (!this.help.open) this.help.showModal();
   }
 
-  private run(answer: Promise<unknown>): void {
+  private run(answer: Promise<unknown>): Promise<unknown> {
     tell_refusal(answer, this.tell);
+    return answer;
   }
 }
