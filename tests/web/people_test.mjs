@@ -152,6 +152,56 @@ test('an operator that may not hold gives itself a hand by one click', bounded, 
     await until(() => own.isChecked(), 'the list shows it');
   }));
 
+test('who only looks is shown neither hint nor ring, and offered no copy, until it has a hand', bounded, () =>
+  with_two(async (ada, ben) => {
+    await open_list(ada);
+    const hand = ada.getByRole('checkbox', { name: 'Ben may hold' });
+    await hand.uncheck();
+    await until(() => ben.getByText('You look; an operator can give you a hand.').isVisible(), 'Ben only looks');
+    const offered = async () => {
+      await point_at_cloth(ben);
+      return {
+        hint: await ben.getByText(/^Take the cloth: /).isVisible(),
+        ring: (await read(ben, 'ring')).points.length > 0,
+        cursor: await ben.locator('#view').getAttribute('data-cursor'),
+        copy: await ben.getByRole('button', { name: 'Try it yourself' }).isEnabled(),
+      };
+    };
+    assert.deepEqual(await offered(), { hint: false, ring: false, cursor: '', copy: false });
+    assert.match(await ben.locator('#copy').getAttribute('title'), /^You only look: with a hand/);
+    await ben.keyboard.press('c');
+    await until(() => ben.getByText('You only look, and cannot take the cloth').isVisible(), 'no cursor either');
+    assert.equal((await read(ben, 'ring')).points.length, 0);
+    await hand.check();
+    await until(async () => !(await ben.getByText('You look; an').isVisible()), 'Ben has a hand');
+    assert.deepEqual(await offered(), { hint: true, ring: true, cursor: 'grab', copy: true });
+    assert.match(await ben.locator('#copy').getAttribute('title'), /^A copy of this cloth/);
+  }));
+
+test('a refusal is read in full while the controls are open', bounded, () =>
+  with_two(async (ada, ben) => {
+    const toast = ben.locator('#toast');
+    for (const [width, height] of [[1000, 700], [375, 667], [667, 375]]) {
+      await ben.setViewportSize({ width, height });
+      await until(async () => (await read(ben, 'size')).width === width);
+      await show_controls(ben);
+      await ben.getByRole('slider', { name: 'Wind' }).focus();
+      await ben.keyboard.press('End');
+      await until(async () => /may/.test(await toast.textContent()), 'it is told');
+      await toast.evaluate((shown) => (shown.hidden = false)); // however slow the test
+      const box = await toast.boundingBox();
+      assert.ok(box.x >= 0 && box.y >= 0 && box.x + box.width <= width, `within ${width} x ${height}`);
+      const clip = { x: box.x + 12, y: box.y + 2, width: box.width - 24, height: box.height - 4 }; // without round corners
+      const shown = await ben.screenshot({ clip });
+      const show_rest = (visibility) =>
+        ben.locator('#top, #toolbar').evaluateAll((all, value) => all.forEach(({ style }) => (style.visibility = value)), visibility);
+      await show_rest('hidden');
+      const bare = await ben.screenshot({ clip });
+      await show_rest('');
+      assert.ok(shown.equals(bare), `nothing lies over it in ${width} x ${height}`);
+    }
+  }));
+
 test('a control whose command is refused shows the value of the server again', bounded, () =>
   with_two(async (ada, ben) => {
     await show_controls(ben);

@@ -147,7 +147,9 @@ test('who may only look neither makes a copy nor opens or closes rooms, and a li
   await until(() => field.isVisible());
   const guest = await open_page(browser, await field.inputValue());
   await in_room(guest, 'ada');
-  await press(guest, 'Try it yourself');
+  assert.ok(await guest.getByRole('button', { name: 'Try it yourself' }).isDisabled());
+  await guest.locator('#view').focus();
+  await guest.keyboard.press('t');
   await until(() => guest.getByText('You only look: with a hand you can make a copy of your own').isVisible());
   const list = await open_list(guest);
   assert.equal(await list.getByRole('button', { name: /^Close (?!$)/ }).count(), 0);

@@ -89,3 +89,33 @@ test('a key after a click leaves the view without a frame; Tab gives it one', bo
     await until(back, 'the keyboard has come to the view');
   }),
 );
+
+test('Space pauses after a click on any control, and presses a button that Tab leads to', bounded, () =>
+  with_page({ width: 1280, height: 800, paused: true }, async (page, script) => {
+    const paused = (wanted) => until(async () => (await read(page, 'paused')) === wanted, `paused: ${wanted}`);
+    const resets = [];
+    script.on('notice', ({ code }) => code === 'reset' && resets.push(code));
+    let now = true;
+    for (const control of ['Reset', 'Sling', 'Figures', 'Frame the cloth']) {
+      await page.getByRole('button', { name: control, exact: true }).click();
+      await page.keyboard.press('Space');
+      now = !now;
+      await paused(now);
+    }
+    await page.getByRole('slider', { name: 'Wind' }).click();
+    await page.keyboard.press('Space');
+    await paused(!now);
+    await done(page);
+    await script.query('state');
+    assert.equal(resets.length, 1, 'the click alone');
+    assert.equal(await page.locator('#sling').getAttribute('aria-pressed'), 'true');
+    await page.locator('#pause').focus();
+    await page.keyboard.press('Tab');
+    assert.equal(await page.evaluate(() => document.activeElement.id), 'reset');
+    await page.keyboard.press('Space');
+    await until(() => resets.length === 2, 'the key presses it');
+    await done(page);
+    assert.equal(await read(page, 'paused'), !now, 'and does not pause');
+    await script.set({ wind: [0, 0, 0] });
+  }),
+);

@@ -82,11 +82,9 @@ export class Page {
     this.stage.scene.add(this.hands.group, this.pins.group, this.fans.group, this.reticle.group);
     this.client = connect_client(own_name());
     this.told_camera = new ToldCamera(this.client);
-    this.toolbar = new Toolbar(this.client, (text) => this.panels.tell(text), {
-      frame: () => this.frame(),
-      fan: () => fan_of_view(this.orbit),
-    });
     const tell = (text: string) => this.panels.tell(text);
+    const view = { frame: () => this.frame(), fan: () => fan_of_view(this.orbit) };
+    this.toolbar = new Toolbar(this.client, tell, view);
     this.box_view = new BoxView(this.client, () => (this.dirty = true), tell);
     this.stage.scene.add(this.box_view.boxes.lines);
     new NameDialog(this.client, tell);
@@ -192,6 +190,7 @@ export class Page {
     client.on('roster', (roster) => {
       this.viewers = roster.viewers;
       panels.roster(roster, client.viewer);
+      this.hint.offer(this.holding.allowed);
       this.show_pins();
     });
     client.on('pins', ({ pins }) => {
@@ -380,9 +379,9 @@ export class Page {
     const taken = this.holding.hover(state === 'idle' ? point : null);
     this.input.follow();
     this.key_hand.follow();
-    const { hovered, radius } = this.holding;
+    const { hovered, radius, allowed } = this.holding;
     this.crowd.company.point(hovered?.position ?? null);
-    const ring = this.key_hand.holds ? null : (this.key_hand.cursor ?? hovered);
+    const ring = this.key_hand.holds || !allowed ? null : (this.key_hand.cursor ?? hovered);
     this.reticle.update(ring, radius, this.world, this.orbit.camera, this.size());
     const cursors = { idle: taken ? 'grab' : '', camera: 'move', holding: 'grabbing' };
     this.canvas.dataset.cursor = cursors[state];

@@ -38,6 +38,11 @@ export class Holding {
     this.taking = new Taking(reach, this.pointed, () => this.radius);
   }
 
+  /** Whether the viewer may hold anything. */
+  get allowed(): boolean {
+    return this.reach.viewer(this.reach.client.viewer)?.hand !== false;
+  }
+
   get holds_cloth(): boolean {
     return this.cloths.length > 0;
   }
@@ -100,13 +105,9 @@ export class Holding {
     if (this.reach.client.connected) this.pinning.toggle_at(point, FINGER_REACH);
   }
 
-  /** Looks under an idle pointer. @returns whether something there can be taken */
+  /** Looks under an idle pointer. @returns whether something there can be taken by this viewer */
   hover(point: Vector2 | null): boolean {
-    this.hovered = this.pointed.cloth(point);
-    const fan = this.pointed.fan(point, this.hovered);
-    if (fan) this.hovered = null;
-    if (!point || this.hovered || fan) return this.hovered !== null || fan !== null;
-    return this.taking.can_take_object(point);
+    return this.takes_at(point) && this.allowed;
   }
 
   /** The hands in the cloth as they are drawn. */
@@ -119,6 +120,14 @@ export class Holding {
   /** Makes hands hold more or less of the cloth. @param factor of the radius */
   widen(factor: number): void {
     this.radius = Math.min(WIDEST, Math.max(NARROWEST, this.radius * factor));
+  }
+
+  private takes_at(point: Vector2 | null): boolean {
+    this.hovered = this.pointed.cloth(point);
+    const fan = this.pointed.fan(point, this.hovered);
+    if (fan) this.hovered = null;
+    if (!point || this.hovered || fan) return this.hovered !== null || fan !== null;
+    return this.taking.can_take_object(point);
   }
 
   private get cloths(): Hold[] {

@@ -41,6 +41,7 @@ export class KeyHand {
   /** Puts the cursor on the cloth, or takes it away. */
   toggle(): void {
     if (this.cursor) return this.leave();
+    if (!this.holding.allowed) return this.reach.tell('You only look, and cannot take the cloth');
     this.cursor = this.nearest_to_middle();
     this.say(this.cursor ? 'Cursor on the cloth' : 'No cloth in view');
   }

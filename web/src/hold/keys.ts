@@ -79,15 +79,21 @@ export function listen_to_keys(actions: KeyActions): void {
     '+': () => actions.zoom(1 / ZOOM_STEP),
     '-': () => actions.zoom(ZOOM_STEP),
   };
+  let pointed = false; // a pointer, and not the keyboard, was the last to choose a control
+  window.addEventListener('pointerdown', () => (pointed = true), true);
   window.addEventListener('keydown', (event) => {
+    if (event.key === 'Tab') pointed = false;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     const element = event.target instanceof Element ? event.target : null;
     // A dialog takes no keys but its own; a list uses letters itself.
     if (element?.closest('dialog, select')) return;
     const key = event.key.length === 1 ? event.key.toLowerCase() : event.key;
-    const free = !element?.closest('button, input');
+    const control = element?.closest<HTMLElement>('button, input');
+    const left = pointed && control?.matches('button'); // else the button would be pressed again
+    const free = !control || left || (key === ' ' && control.matches('[type="range"]'));
     const action = anywhere[key] ?? (free ? outside_controls[key] : undefined);
     if (!action) return;
+    if (left) control?.blur();
     const repeats = key.startsWith('Arrow') || '.+-[]'.includes(key);
     if ((!event.repeat || repeats) && action(event) === false) return;
     event.preventDefault();

@@ -4,6 +4,8 @@ import { element } from './element.js';
 import type { RoomDialog } from './room_dialog.js';
 import { room_tools } from './room_tools.js';
 
+const ONLY_LOOKS = 'You only look: with a hand you can make a copy of your own';
+
 /** The room that the page is in: its name, a copy of it in one click, the way back, and all rooms. */
 export class RoomPanel {
   private dialog: Promise<RoomDialog> | null = null; // loaded when it is first opened
@@ -11,6 +13,7 @@ export class RoomPanel {
   private address = socket_of(own_room()); // of the socket that is open
   private token = own_token(); // with which it was opened
   private copies = false; // a copy is being made
+  private words = element('copy').title;
   private many = false; // whether the server has more than one room
 
   constructor(
@@ -21,9 +24,12 @@ export class RoomPanel {
       this.many = capabilities.includes('rooms');
       this.show();
     });
-    client.on('status', ({ phase }) => (element<HTMLButtonElement>('copy').disabled = phase !== 'open'));
+    client.on('status', ({ phase }) => this.offer_copy(phase === 'open'));
     client.on('roster', ({ viewers }) => {
-      this.role = viewers.find(({ id }) => id === client.viewer)?.role ?? 'viewer';
+      const own = viewers.find(({ id }) => id === client.viewer);
+      this.role = own?.role ?? 'viewer';
+      const holds = own?.hand !== false;
+      this.offer_copy(holds, holds ? undefined : ONLY_LOOKS);
       void this.dialog?.then((dialog) => dialog.show_role(this.role)).catch(() => {});
     });
     element('room').addEventListener('click', () => void this.open());
@@ -66,6 +72,12 @@ export class RoomPanel {
     await dialog?.open().catch(() => {}); // the server is away; the next press tries again
   }
 
+  private offer_copy(offered: boolean, words = this.words): void {
+    const button = element<HTMLButtonElement>('copy');
+    button.disabled = !offered;
+    button.title = words;
+  }
+
   private go_back(): void {
     if (this.from) window.history.back();
     else this.go(FIRST_ROOM);
@@ -102,6 +114,6 @@ export class RoomPanel {
 
 /** Why there is no copy, in words. */
 function refusal_text({ code, message }: CommandError): string {
-  if (code === 'not_allowed') return 'You only look: with a hand you can make a copy of your own';
+  if (code === 'not_allowed') return ONLY_LOOKS;
   return `No copy was made: ${message}`;
 }
