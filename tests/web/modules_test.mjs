@@ -5,7 +5,7 @@ import { import_page_module } from './support/page_module.mjs';
 
 const { Fans } = await import_page_module('view/fans');
 const { FabricCircle } = await import_page_module('view/fabric_circle');
-const { label_left } = await import_page_module('view/hands');
+const { apart, label_left } = await import_page_module('view/labels');
 const { HandLatency } = await import_page_module('hold/hand_latency');
 const { MarkDot, MarkLine, OrbitCamera } = await import_page_module('view/marks', 'view/camera');
 const { cast_ray, point_on_triangle } = await import_page_module('view/ray');
@@ -61,6 +61,51 @@ test('a label stays in the picture as long as its mark is there, beside and not 
     }
     assert.ok(label_left(picture + 1, 110, picture) > picture, 'its mark is outside');
   }
+});
+
+/** Labels of hands that are so near each other, somewhere in a picture; the same for the same seed. */
+function labels_of(count, near, { width, height }, seed) {
+  const random = numbers(seed);
+  const [x, y] = [random() * width, random() * height];
+  return Array.from({ length: count }, () => {
+    const label = { width: 40 + 130 * random(), height: 21 };
+    const mark = Math.min(width, Math.max(0, x + near * (2 * random() - 1)));
+    const at = Math.min(height - 12, Math.max(12, y + near * (2 * random() - 1)));
+    return { ...label, x: label_left(mark, label.width, width), y: at, wanted: at };
+  });
+}
+
+const cover = (a, b) =>
+  a.x < b.x + b.width && b.x < a.x + a.width && Math.abs(a.y - b.y) < (a.height + b.height) / 2;
+
+test('no label covers another, all of seven hands are there, in the picture and in their order', () => {
+  const pictures = [{ width: 375, height: 667 }, { width: 667, height: 375 }, { width: 1280, height: 800 }];
+  for (const picture of pictures)
+    for (let seed = 1; seed <= 300; seed++) {
+      const labels = labels_of(7, seed % 90, picture, seed);
+      const placed = apart(labels, picture.height);
+      assert.equal(placed.length, 7, `${seed}`);
+      for (const [k, one] of placed.entries()) {
+        assert.ok(one.y + one.height / 2 <= picture.height && one.y > -one.height, `${seed}: in the picture`);
+        assert.ok(Math.abs(one.y - one.wanted) <= 160, `${seed}: near its mark`);
+        for (const other of placed.slice(k + 1)) {
+          assert.ok(!cover(one, other), `${seed}: ${JSON.stringify([one, other])}`);
+          const meet = one.x < other.x + other.width && other.x < one.x + one.width;
+          if (meet) assert.equal(one.y < other.y, one.wanted <= other.wanted, `${seed}: in their order`);
+        }
+      }
+    }
+});
+
+test('a label that covers none stays beside its mark, and of a crowd at one point only the nearest are shown', () => {
+  const picture = { width: 1280, height: 800 };
+  const far = Array.from({ length: 20 }, (_, k) => ({ x: 100, y: 30 + 30 * k, width: 90, height: 21 }));
+  const before = structuredClone(far);
+  assert.deepEqual(apart(far, picture.height), before);
+  const crowd = labels_of(60, 0, picture, 5);
+  const placed = apart(crowd, picture.height);
+  assert.ok(placed.length >= 7 && placed.length < 12, `${placed.length}`);
+  for (const [k, one] of placed.entries()) for (const other of placed.slice(k + 1)) assert.ok(!cover(one, other));
 });
 
 test('a ray through a point of a triangle meets it there, from both sides', () => {

@@ -1,6 +1,6 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
-import { read, until } from './support/browser.mjs';
+import { next_pictures, read, until } from './support/browser.mjs';
 import { server, with_page } from './support/default_page.mjs';
 import { bounded } from './support/default_scene.mjs';
 import { import_page_module } from './support/page_module.mjs';
@@ -100,6 +100,39 @@ test('the longest name is cut wherever it is shown, and leaves every control and
     await until(() => page.locator('#following').isVisible(), 'whom the page follows');
     await is_cut(page.locator('#following .viewer-name'), 'in the corner');
     assert.deepEqual(await outside(page, 'header', '*'), []);
+  }),
+);
+
+test('names of seven hands near each other are all read, on a wide screen and on a phone', bounded, () =>
+  with_named(Array(7).fill(LONGEST), { width: 1280, height: 800 }, async (page, script, ...others) => {
+    const [positions, particles] = [await script.query('positions'), [130, 131, 132, 160, 161, 190, 191]];
+    others.forEach((other, k) => {
+      const [x, y, z] = positions[particles[k]];
+      // Some behind the form, some before the cloth.
+      other.drag({ particle: particles[k] }, { target: [x, y, z + (k % 2 ? 0.2 : -0.6)] });
+    });
+    for (const [width, height] of [[1280, 800], [375, 667]]) {
+      const at = `at ${width} x ${height}`;
+      await page.setViewportSize({ width, height });
+      await until(async () => (await read(page, 'size')).width === width);
+      const labels = await until(async () => {
+        await next_pictures(page);
+        const all = await page.locator('.name').filter({ hasText: ' N' }).evaluateAll((all) =>
+          all.filter((label) => label.checkVisibility()).map((label) => {
+            const { left, right, top, bottom } = label.getBoundingClientRect();
+            return { left, right, top, bottom, opacity: getComputedStyle(label).opacity };
+          }));
+        return all.length === 7 && all;
+      }, `all are there ${at}`);
+      for (const [k, one] of labels.entries()) {
+        assert.equal(one.opacity, '1', at);
+        assert.ok(one.right - one.left < width / 2, `${one.right - one.left} wide ${at}`);
+        for (const other of labels.slice(k + 1)) {
+          const beside = one.right <= other.left || other.right <= one.left || one.bottom <= other.top || other.bottom <= one.top;
+          assert.ok(beside, `${JSON.stringify([one, other])} ${at}`);
+        }
+      }
+    }
   }),
 );
 

@@ -6,6 +6,7 @@ import type { OrbitCamera } from './view/camera.js';
 import { Cursors } from './view/cursors.js';
 import type { Director } from './view/director.js';
 import { pose_of_camera } from './view/framing.js';
+import type { Labels } from './view/labels.js';
 import { Company } from './wire/company.js';
 
 /** What the crowd reaches for, and where it reports to. */
@@ -26,7 +27,7 @@ export class Crowd {
   private panel: PeoplePanel;
 
   constructor(
-    labels: HTMLElement,
+    private labels: Labels,
     private around: Surroundings,
   ) {
     const { client, orbit, director, tell } = around;
@@ -51,7 +52,8 @@ export class Crowd {
   }
 
   draw(camera: PerspectiveCamera, { width, height }: { width: number; height: number }): void {
-    this.cursors.update(this.pointing(), camera, width, height);
+    this.cursors.update(this.pointing(), camera, height);
+    this.labels.arrange(width, height); // those of hands too
   }
 
   /** What others point at who do not hold the cloth: their hands show that. */

@@ -111,7 +111,7 @@ export class Page {
       changed: () => (this.dirty = true),
     };
     const grabs = () => this.holding.grabs;
-    this.crowd = new Crowd(element('labels'), { ...reach, director: this.director, grabs });
+    this.crowd = new Crowd(this.hands.labels, { ...reach, director: this.director, grabs });
     this.stage.scene.add(this.crowd.cursors.group);
     this.holding = new Holding(reach);
     this.key_hand = new KeyHand(reach, this.holding.pointed, this.holding);

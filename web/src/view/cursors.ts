@@ -1,12 +1,13 @@
 import { Group, Vector3 } from 'three';
 import type { PerspectiveCamera } from 'three';
 import type { Vec3 } from '../../../proto/js/messages.js';
+import { Label } from './labels.js';
+import type { Labels } from './labels.js';
 import { MarkDot } from './marks.js';
-import { named, write_words } from './words.js';
+import { named } from './words.js';
 
 const RADIUS = 5; // [pixels]
 const MOST = 12; // drawn; more hide the cloth
-const LABEL_OFFSET = 12; // [pixels]
 const ORDER = 24; // above the hands
 
 /** What another viewer points at, as drawn. */
@@ -21,11 +22,11 @@ export interface DrawnCursor {
 export class Cursors {
   readonly group = new Group();
   shown: DrawnCursor[] = [];
-  private marks: { dot: MarkDot; label: HTMLElement }[] = [];
+  private marks: { dot: MarkDot; label: Label }[] = [];
 
-  constructor(private labels: HTMLElement) {}
+  constructor(private labels: Labels) {}
 
-  update(cursors: DrawnCursor[], camera: PerspectiveCamera, width: number, height: number): void {
+  update(cursors: DrawnCursor[], camera: PerspectiveCamera, height: number): void {
     this.shown = cursors.slice(0, MOST);
     while (this.marks.length > this.shown.length) this.drop();
     while (this.marks.length < this.shown.length) this.add();
@@ -33,20 +34,14 @@ export class Cursors {
       const { dot, label } = this.marks[k];
       dot.color = color;
       dot.set(place, camera, height);
-      if (label.textContent !== name) write_words(label, named(name));
-      label.style.setProperty('--color', color);
-      const point = new Vector3(...place).project(camera);
-      label.hidden = Math.abs(point.z) > 1;
-      const x = ((point.x + 1) / 2) * width + LABEL_OFFSET;
-      const y = ((1 - point.y) / 2) * height;
-      label.style.transform = `translate(${x.toFixed(1)}px, ${y.toFixed(1)}px) translateY(-50%)`;
+      label.write(named(name));
+      label.element.style.setProperty('--color', color);
+      label.aim(new Vector3(...place), camera);
     });
   }
 
   private add(): void {
-    const mark = { dot: new MarkDot(RADIUS, ORDER), label: document.createElement('span') };
-    mark.label.className = 'name';
-    this.labels.append(mark.label);
+    const mark = { dot: new MarkDot(RADIUS, ORDER), label: new Label(this.labels) };
     this.group.add(mark.dot.group);
     this.marks.push(mark);
   }

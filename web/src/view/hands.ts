@@ -1,15 +1,15 @@
 import { Group, Vector3 } from 'three';
 import type { PerspectiveCamera } from 'three';
 import type { Grab, Vec3, Viewer } from '../../../proto/js/messages.js';
+import { Label, Labels } from './labels.js';
 import { MarkDot, MarkLine } from './marks.js';
-import { named, write_words } from './words.js';
+import { named } from './words.js';
 
 export const NO_COLOR = '#5c6068'; // of an unknown viewer
 const LINE_WIDTH = 2.5; // [pixels]
 const LINE_OPACITY = 0.92;
 const DOT_RADIUS = 4.5; // [pixels]
 const TARGET_RADIUS = 6.5; // [pixels]
-const LABEL_OFFSET = 14; // [pixels]
 const FINGER_OFFSET = 56; // of a label that a finger must not cover, upwards [pixels]
 const STEADY_PART = 0.04; // by which a force changes before it is written anew
 const STEADY_FORCE = 0.05; // [N]
@@ -48,8 +48,11 @@ export class Hands {
   /** Kept for the next hand: with the last mark a program would go, and be made anew in the next grasp. */
   private spare: HandMark[] = [];
   shown: Hand[] = [];
+  readonly labels: Labels;
 
-  constructor(private labels: HTMLElement) {
+  /** @param labels element of all that is written beside marks */
+  constructor(labels: HTMLElement) {
+    this.labels = new Labels(labels);
     this.spare.push(this.make()); // so that programs are made before the first grasp
   }
 
@@ -82,14 +85,12 @@ class HandMark {
   private line = new MarkLine(LINE_WIDTH, LINE_OPACITY, 20);
   private held = new MarkDot(DOT_RADIUS, 21);
   private target = new MarkDot(TARGET_RADIUS, 23);
-  private label = document.createElement('span');
-  private words = ''; // as written
-  private force: number | null = null; // the same [N]
-  private label_width = 0; // of what is written; 0: not measured yet [pixels]
+  private label: Label;
+  private force: number | null = null; // as written [N]
 
-  constructor(private labels: HTMLElement) {
+  constructor(labels: Labels) {
+    this.label = new Label(labels);
     for (const mark of this.parts) this.group.add(mark.group);
-    this.label.className = 'name';
     this.group.visible = false;
   }
 
@@ -101,29 +102,20 @@ class HandMark {
   }
 
   update(hand: Hand, camera: PerspectiveCamera, width: number, height: number): void {
-    if (!this.group.visible) this.labels.append(this.label);
     this.group.visible = true;
     this.line.set([hand.held, hand.target], width, height);
     this.held.set(hand.held, camera, height);
     this.target.set(hand.target, camera, height);
     for (const part of this.parts) part.color = hand.color;
     this.write(hand);
-    this.place_label(hand, camera, width, height);
+    this.aim_label(hand, camera);
   }
 
   /** Beside the target of somebody's hand, beside the line of the own one. */
-  private place_label(hand: Hand, camera: PerspectiveCamera, width: number, height: number): void {
-    const { label } = this;
-    const target = new Vector3(...hand.target);
-    const place = hand.own ? target.clone().add(new Vector3(...hand.held)).multiplyScalar(0.5) : target;
-    const point = place.project(camera);
-    label.hidden = Math.abs(point.z) > 1 || this.words === '';
-    if (label.hidden) return;
-    this.label_width ||= label.offsetWidth;
-    const above = hand.finger ? FINGER_OFFSET : 0;
-    const at = { x: ((point.x + 1) / 2) * width, y: ((1 - point.y) / 2) * height - above };
-    const x = label_left(at.x, this.label_width, width);
-    label.style.transform = `translate(${x.toFixed(1)}px, ${at.y.toFixed(1)}px) translateY(-50%)`;
+  private aim_label(hand: Hand, camera: PerspectiveCamera): void {
+    const point = new Vector3(...hand.target);
+    if (hand.own) point.add(new Vector3(...hand.held)).multiplyScalar(0.5);
+    this.label.aim(point, camera, hand.finger ? FINGER_OFFSET : 0);
   }
 
   dispose(): void {
@@ -137,36 +129,21 @@ class HandMark {
   }
 
   private write({ name, color, own, hidden, force }: Hand): void {
-    const { label } = this;
-    label.style.setProperty('--color', color);
-    label.toggleAttribute('data-own', own);
-    label.toggleAttribute('data-hidden', hidden);
+    const { element } = this.label;
+    element.style.setProperty('--color', color);
+    element.toggleAttribute('data-own', own);
+    element.toggleAttribute('data-hidden', hidden);
     const steady =
       force !== null &&
       this.force !== null &&
       Math.abs(force - this.force) < Math.max(STEADY_FORCE, STEADY_PART * this.force);
     if (!steady) this.force = force;
     const words = [own ? '' : named(name), this.force === null ? '' : force_text(this.force)];
-    const text = words.filter(Boolean).join(' · ');
-    if (this.words === text) return;
-    this.words = text;
-    write_words(label, text);
-    this.label_width = 0;
+    this.label.write(words.filter(Boolean).join(' · '));
   }
 }
 
 /** @param force [N] */
 function force_text(force: number): string {
   return `${force.toFixed(force < 9.95 ? 1 : 0)} N`;
-}
-
-/**
- * Where a label begins: to the right of a mark, or to its left where it would leave the picture. Beside a
- * mark that is itself outside it leaves the picture too.
- * @param mark where that is; all in pixels from the picture's left edge
- */
-export function label_left(mark: number, label: number, picture: number): number {
-  const right = mark + LABEL_OFFSET;
-  const fits = right + label <= picture || mark > picture;
-  return fits ? right : Math.max(0, mark - LABEL_OFFSET - label);
 }
