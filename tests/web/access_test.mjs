@@ -82,8 +82,6 @@ const SMALL = [
 test('on small screens panels and toolbar leave 60 % of the height, and nothing sticks out', bounded, async () => {
   const name = 'Maximilian-Alexander von Weft 32'; // the longest
   const page = await open_page(browser, server.url, { ...PHONE, name });
-  const other = await open_page(browser, server.url, { name: 'Ben' });
-  await until(async () => (await page.locator('#viewers li').count()) === 2, 'both are named');
   const own = page.getByRole('list', { name: 'Viewers' }).getByRole('button');
   const clear = () => page.evaluate(() => {
     const rect = (element) => element.getBoundingClientRect();
@@ -104,20 +102,26 @@ test('on small screens panels and toolbar leave 60 % of the height, and nothing 
       apart: header.right <= side.left,
     };
   });
-  for (const [width, height] of SMALL) {
-    await page.setViewportSize({ width, height });
-    await until(async () => (await read(page, 'size')).width === width);
-    const at = `${width} x ${height}`;
-    const { free, out, apart } = await clear();
-    assert.ok(free >= 0.6, `${at}: ${free} of the height is free`);
-    assert.deepEqual(out, [], at);
-    assert.ok(apart, `${at}: the panels keep apart`);
-    for (const control of [own, page.locator('#room'), page.locator('#copy')])
-      await control.click({ trial: true, timeout: 30_000 }); // nothing else lies over it
-    await page.getByRole('button', { name: 'Controls' }).click();
-    assert.deepEqual((await clear()).out, [], `${at} with all controls`);
-    await page.getByRole('button', { name: 'Controls' }).click();
-  }
+  const fits = async (who) => {
+    for (const [width, height] of SMALL) {
+      await page.setViewportSize({ width, height });
+      await until(async () => (await read(page, 'size')).width === width);
+      const at = `${who} at ${width} x ${height}`;
+      const { free, out, apart } = await clear();
+      assert.ok(free >= 0.6, `${at}: ${free} of the height is free`);
+      assert.deepEqual(out, [], at);
+      assert.ok(apart, `${at}: the panels keep apart`);
+      for (const control of [own, page.locator('#room'), page.locator('#copy')])
+        await control.click({ trial: true, timeout: 30_000 }); // nothing else lies over it
+      await page.getByRole('button', { name: 'Controls' }).click();
+      assert.deepEqual((await clear()).out, [], `${at} with all controls`);
+      await page.getByRole('button', { name: 'Controls' }).click();
+    }
+  };
+  await fits('alone');
+  const other = await open_page(browser, server.url, { name: 'Ben' });
+  await until(() => page.getByRole('button', { name: '2 people' }).isVisible(), 'both are counted');
+  await fits('two');
   await other.context().close();
   await page.context().close();
 });

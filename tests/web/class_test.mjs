@@ -38,7 +38,7 @@ async function enter_all(browser, url) {
 }
 
 async function open_people(teacher) {
-  await teacher.getByRole('list', { name: 'Viewers' }).getByRole('button').click();
+  await teacher.getByRole('list', { name: 'Viewers' }).getByRole('button').first().click();
   await until(() => teacher.getByRole('list', { name: 'People' }).isVisible());
 }
 

@@ -68,9 +68,9 @@ test('the longest name is cut wherever it is shown, and leaves every control and
       const at = `at ${width} x ${height}`;
       await page.setViewportSize({ width, height });
       await until(async () => (await read(page, 'size')).width === width);
-      await until(async () => (await page.locator('#viewers li').count()) === 3, 'all three are listed');
+      await until(async () => (await page.locator('#viewers li').count()) === (width > 600 ? 3 : 1), `who is here ${at}`);
       const edge = page.locator(`#viewers [title=${LONGEST}]`);
-      for (const k of [0, 1]) await is_cut(edge.nth(k), `at the screen’s edge ${at}`);
+      if (width > 600) for (const k of [0, 1]) await is_cut(edge.nth(k), `at the screen’s edge ${at}`);
       assert.deepEqual(await outside(page, 'header', '*'), [], at);
       const rows = await page.locator('#guarantee-text').evaluate((text) => {
         const range = document.createRange();
@@ -100,6 +100,42 @@ test('the longest name is cut wherever it is shown, and leaves every control and
     await until(() => page.locator('#following').isVisible(), 'whom the page follows');
     await is_cut(page.locator('#following .viewer-name'), 'in the corner');
     assert.deepEqual(await outside(page, 'header', '*'), []);
+  }),
+);
+
+test('on small screens who is alone is named, and more are counted; a tap on the count lists them', bounded, () =>
+  with_named([], { width: 375, height: 667, name: LONGEST }, async (page, script) => {
+    script.close();
+    const sizes = [[375, 667], [667, 375], [500, 400]];
+    const resize = async ([width, height]) => {
+      await page.setViewportSize({ width, height });
+      await until(async () => (await read(page, 'size')).width === width);
+    };
+    const whole = (words) => page.locator(words).evaluate((one) => one.scrollWidth <= one.clientWidth);
+    const viewers = page.getByRole('list', { name: 'Viewers' });
+    for (const size of sizes) {
+      await resize(size);
+      await until(async () => (await viewers.getByRole('listitem').count()) === 1, 'it is alone');
+      await is_cut(viewers.getByTitle(LONGEST), `at ${size}`);
+      assert.deepEqual(await outside(page, '#viewers', 'li, .viewer-name'), [], `at ${size}`);
+    }
+    const others = await Promise.all(['Ada', 'Ben', 'Carl', 'Dora', 'Emil', 'Fritz'].map((name) => server.script(name)));
+    for (const size of sizes) {
+      await resize(size);
+      const count = viewers.getByRole('button', { name: '7 people' });
+      await until(() => count.isVisible(), `they are counted at ${size}`);
+      assert.equal(await viewers.getByRole('listitem').count(), 1);
+      assert.deepEqual(await outside(page, 'header', '*'), [], `at ${size}`);
+      assert.ok(await whole('#room-name'), `the room’s name is whole at ${size}`);
+      assert.ok((await page.locator('header').boundingBox()).height < 130, 'the cloth has its room');
+      await count.click();
+      const list = page.getByRole('list', { name: 'People' });
+      await until(async () => (await list.getByRole('listitem').count()) === 7, 'all are listed');
+      await page.keyboard.press('Escape');
+    }
+    await resize([1280, 800]);
+    await until(() => viewers.getByRole('button', { name: 'and 1 more' }).isVisible(), 'six are named on a wide screen');
+    for (const other of others) other.close();
   }),
 );
 
@@ -160,7 +196,7 @@ function hear_deceivers() {
 }
 
 test('a name neither turns nor hides letters, its own or those beside it', bounded, () =>
-  with_named(['Mallory', 'Nobody', 'עדה'], { before: hear_deceivers }, async (page, script, ...others) => {
+  with_named(['Mallory', 'Nobody', 'עדה'], { width: 900, height: 600, before: hear_deceivers }, async (page, script, ...others) => {
     const [mallory, nobody, hebrew] = others;
     const known = ['\ufffdTeacher', `viewer ${nobody.viewer}`, 'עדה'];
     const names = (list) => page.locator(`${list} .viewer-name`).allTextContents();

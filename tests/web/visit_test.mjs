@@ -23,8 +23,8 @@ test('a first visit tells that the cloth can be taken, until it is', bounded, ()
 );
 
 test('a viewer types a name, which others see and the browser remembers', bounded, () =>
-  with_page({}, async (page, script) => {
-    const other = await open_page(browser, server.url, { name: 'Ben' });
+  with_page({ width: 900, height: 600 }, async (page, script) => {
+    const other = await open_page(browser, server.url, { width: 900, height: 600, name: 'Ben' });
     await page.getByRole('list', { name: 'Viewers' }).getByRole('button').click();
     const dialog = page.getByRole('dialog', { name: 'People' });
     const input = dialog.getByRole('textbox', { name: 'Name' });

@@ -1,4 +1,4 @@
-import type { Roster, State } from '../../../proto/js/messages.js';
+import type { Roster, State, Viewer } from '../../../proto/js/messages.js';
 import { name_element, write_words } from '../view/words.js';
 import type { Refusal } from '../wire/connection.js';
 import { Disclosure } from './disclosure.js';
@@ -8,6 +8,7 @@ import { crossings_text, guarantee_text, reasons_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
 const MOST_NAMES = 6;
+const SMALL = '(width <= 600px), (height <= 480px)'; // as in screens.css; who is not alone is only counted there
 const WIDE = '(width >= 1600px) and (height >= 720px)'; // where figures do not cover the cloth
 const RATE_WINDOW = 2; // window of the tick rate [s]
 
@@ -18,9 +19,16 @@ export class Panels {
   private toast_timer = 0;
   private phase: Phase = 'connecting';
   private refusal: Refusal | null = null;
+  private viewers: Viewer[] = [];
+  private own = 0;
+  private small = window.matchMedia(SMALL);
   private ticks: { tick: number; time: number }[] = [];
   private energy = new EnergyChart();
   private figures = new Disclosure('figures', window.matchMedia(WIDE).matches, () => this.energy.draw());
+
+  constructor() {
+    this.small.addEventListener('change', () => this.show_viewers());
+  }
 
   toggle_figures(): void {
     this.figures.toggle();
@@ -33,7 +41,7 @@ export class Panels {
     this.ticks = [];
     for (const id of ['tick-rate', 'real-time', 'step-time', 'latency']) set_text(id, '–');
     for (const id of ['guarantee', 'reasons', 'crossings', 'asleep']) element(id).hidden = true;
-    element('viewers').replaceChildren();
+    this.roster({ viewers: [] }, 0);
   }
 
   /** Shows the server's reason for refusing the page while it does. */
@@ -127,17 +135,25 @@ export class Panels {
     set_text('latency', seconds === null ? '–' : (seconds * 1000).toFixed(0));
   }
 
-  roster({ viewers }: Roster, own: number): void {
-    const own_first = [...viewers].sort((a, b) => Number(b.id === own) - Number(a.id === own));
-    const items = own_first.slice(0, MOST_NAMES).map(({ id, name, color }) => {
+  roster({ viewers }: Pick<Roster, 'viewers'>, own: number): void {
+    this.viewers = [...viewers].sort((a, b) => Number(b.id === own) - Number(a.id === own));
+    this.own = own;
+    this.show_viewers();
+  }
+
+  private show_viewers(): void {
+    const { viewers, own, small } = this;
+    const most = small.matches && viewers.length > 1 ? 0 : MOST_NAMES;
+    const items = viewers.slice(0, most).map(({ id, name, color }) => {
       const item = document.createElement('li');
       item.append(span('swatch', ''), id === own ? own_entry(name) : name_element(name));
       item.style.setProperty('--color', color);
       return item;
     });
-    if (viewers.length > MOST_NAMES) {
+    const others = viewers.length - items.length;
+    if (others > 0) {
       const more = document.createElement('li');
-      more.textContent = `and ${viewers.length - MOST_NAMES} more`;
+      more.append(opener('Who is here', most ? `and ${others} more` : `${others} people`));
       items.push(more);
     }
     element('viewers').replaceChildren(...items);
@@ -154,11 +170,16 @@ export class Panels {
 
 /** The own name, which can be changed. */
 function own_entry(name: string): HTMLElement {
-  const entry = document.createElement('button');
-  entry.type = 'button';
-  entry.title = 'Change your name';
-  entry.append(name_element(name), span('you', ' (you)'));
-  return entry;
+  return opener('Change your name', name_element(name), span('you', ' (you)'));
+}
+
+/** A button that opens the list of people. */
+function opener(title: string, ...parts: (HTMLElement | string)[]): HTMLElement {
+  const made = document.createElement('button');
+  made.type = 'button';
+  made.title = title;
+  made.append(...parts);
+  return made;
 }
 
 function span(name: string, text: string): HTMLElement {
