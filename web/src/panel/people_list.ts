@@ -120,6 +120,8 @@ export class PeopleList {
     box.addEventListener('change', () => {
       const answer = box.checked ? this.client.giveHand(id) : this.client.mute(id);
       this.tools.attempt(answer);
+      this.told = ''; // made anew, also if the list is closed until it is as before
+      this.made.delete(id);
       answer.catch(() => (box.checked = hand)); // if refused, it is as it was
     });
     label.append(box, 'holds');
