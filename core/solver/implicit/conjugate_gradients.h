@@ -19,6 +19,12 @@ struct LinearSolution {
   bool solved = false;  ///< false: not positive definite, not finite, or not converged in time
 };
 
+/// How well a system has to be solved.
+struct LinearEffort {
+  double tolerance = 1;  ///< as a fraction of that of the settings
+  int iterations = kMostLinearIterations;
+};
+
 /// Vectors of a system, all of equal size.
 template <class Real>
 struct LinearVectors {
@@ -30,12 +36,13 @@ struct LinearVectors {
 
 /// Preconditioned conjugate gradients from zero until sqrt(r^T z) falls to `tolerance` of its
 /// initial value or to `enough`.
+/// @param most          iterations
 /// @param apply         y = A p
 /// @param precondition  z approximates A^-1 r; symmetric and positive definite
 template <class Real, class Apply, class Precondition>
-LinearSolution solve_linear(const LinearVectors<Real>& v, double tolerance, double enough,
+LinearSolution solve_linear(const LinearVectors<Real>& v, double tolerance, double enough, int most,
                             Apply&& apply, Precondition&& precondition) {
-  assert(tolerance > 0 && tolerance < 1);
+  assert(tolerance > 0 && tolerance < 1 && most > 0);
   assert(v.count > 0 && v.count % static_cast<std::size_t>(kGridMargin) == 0);
   LinearSolution result;
   for (std::size_t n = 0; n < v.count; ++n) v.solution[n] = 0;
@@ -45,7 +52,7 @@ LinearSolution solve_linear(const LinearVectors<Real>& v, double tolerance, doub
   result.start = std::sqrt(rz);
   const double limit = std::max(tolerance * result.start, enough);
   for (std::size_t n = 0; n < v.count; ++n) v.direction[n] = v.preconditioned[n];
-  for (; result.iterations < kMostLinearIterations; ++result.iterations) {
+  for (; result.iterations < most; ++result.iterations) {
     stop_point();
     if (std::sqrt(rz) <= limit) {
       result.solved = true;

@@ -50,7 +50,7 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
       assert(particles_.contains(corner));
       corner -= particles_.first;
     }
-    membrane_.push_back({t, {}});
+    membrane_.push_back({t, {}, {}});
   }
   visit_bending_stencils(
       part, [&](double stiffness, const Index* corners, const double* weights, int corner_count) {
@@ -68,6 +68,7 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
     const Hinge<Real>& hinge = model.hinges[static_cast<std::size_t>(hinges_.first) + n];
     for (int k = 0; k < 4; ++k) hinge_terms_[n].x[k] = hinge.x[k] - particles_.first;
   }
+  prepare_factor(model);
 }
 
 template <class Real>
@@ -75,6 +76,7 @@ void ElementSystem<Real>::set_pinned(const std::vector<Real>& inverse_mass) {
   assert(static_cast<std::size_t>(particles_.end()) <= inverse_mass.size());
   for (std::size_t i = 0; i < free_.size(); ++i)
     free_[i] = inverse_mass[static_cast<std::size_t>(particles_.first) + i] > 0 ? Real(1) : Real(0);
+  factored_ = false;
 }
 
 template <class Real>
@@ -156,6 +158,8 @@ void ElementSystem<Real>::linearise(const ClothModel<Real>& model, const NewtonP
   }
   for (std::size_t i = 0; i < inverse_.size(); ++i)
     inverse_[i] = free_[i] > 0 ? inverse_of(diagonal_[i]) : SymmetricBlock<Real>{};
+  if (factor_.is_worn(uses_)) factored_ = false;
+  if (!factored_ && !factor_.empty()) factor();
 }
 
 template <class Real>
@@ -202,7 +206,12 @@ void ElementSystem<Real>::apply(const Real* p, Real* y) const {
 }
 
 template <class Real>
-void ElementSystem<Real>::precondition(const Real* r, Real* z) const {
+void ElementSystem<Real>::precondition(const Real* r, Real* z) {
+  if (factored_) {
+    factor_.solve(r, z);
+    ++uses_;
+    return;
+  }
   for (Index i = 0; i < particles_.count; ++i)
     at(z, i) = times<Real>(inverse_[static_cast<std::size_t>(i)], at(r, i));
 }

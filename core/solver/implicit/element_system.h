@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/solver/implicit/block_factor.h"
 #include "core/solver/implicit/grid_system.h"
 #include "core/solver/implicit/linear_terms.h"
 #include "core/solver/implicit/membrane_term.h"
@@ -13,9 +14,10 @@
 namespace weft {
 
 /// The linear systems of cloths other than regular grids, element by element, preconditioned by the
-/// inverse of the diagonal blocks. A hinge's matrix is k g g^T with g the gradient of its angle
-/// (Gauss-Newton: the curvature of the angle itself may be indefinite). Rest curves have forces but
-/// no matrix: the links' holds most of the second derivatives of their energy.
+/// factors of the matrix where they are worth their cost, otherwise by the inverse of the diagonal
+/// blocks. A hinge's matrix is k g g^T with g the gradient of its angle (Gauss-Newton: the
+/// curvature of the angle itself may be indefinite). Rest curves have forces but no matrix: the
+/// links' holds most of the second derivatives of their energy.
 template <class Real>
 class ElementSystem {
  public:
@@ -27,33 +29,48 @@ class ElementSystem {
     return {at, at + 1, at + 2};
   }
 
+  /// Sets the pinned particles, for a tick. Factors of earlier ticks are forgotten, so that a tick
+  /// depends on nothing but its start.
   void set_pinned(const std::vector<Real>& inverse_mass);
   void linearise(const ClothModel<Real>& model, const NewtonPoint<Real>& point,
                  Vec3Array<Real>& force);
   void load(const Vec3Array<Real>& from, Real* to) const;
   void add(const Real* from, Vec3Array<Real>& to) const;
   void apply(const Real* p, Real* y) const;
-  void precondition(const Real* r, Real* z) const;
+  void precondition(const Real* r, Real* z);
+  LinearEffort effort() const {
+    return factored_ ? LinearEffort{} : LinearEffort{kDiagonalTolerance, kMostDiagonalIterations};
+  }
 
  private:
+  /// Of the pairs (0, 1), (0, 2), (1, 2), (0, 3) ... of an element's particles.
+  template <std::size_t kCorners>
+  using PairSlots = std::array<BlockFactor::Slot, kCorners*(kCorners - 1) / 2>;
+
   /// Energy stiffness/2 |sum_k weight_k x_k|^2.
   struct Stencil {
     Index x[4] = {0, 0, 0, 0};
     Real weight[4] = {0, 0, 0, 0};
     int count = 0;
     Real stiffness = 0;
+    PairSlots<4> slots;
   };
   struct HingeTerm {
     Index x[4];
     std::array<Vec3<Real>, 4> gradient;
     Real stiffness;
+    PairSlots<4> slots;
   };
 
   struct MembraneElement {
     MembraneTriangle<Real> triangle;  ///< particles counted from the part's first
     MembraneTerm<Real> term;
+    PairSlots<3> slots;
   };
 
+  std::size_t products() const;
+  void prepare_factor(const ClothModel<Real>& model);
+  void factor();
   void linearise_membrane(const NewtonPoint<Real>& point, Vec3Array<Real>& force);
 
   std::size_t number_;  ///< of the part
@@ -67,6 +84,10 @@ class ElementSystem {
   std::vector<HingeTerm> hinge_terms_;
   std::vector<SymmetricBlock<Real>> own_, diagonal_, inverse_;
   std::vector<Real> free_;
+  BlockFactor factor_;     ///< empty if it costs more than it saves
+  bool factored_ = false;  ///< it holds the factors of a matrix of this tick
+  std::size_t uses_ = 0;   ///< of these factors
+  std::vector<BlockFactor::Slot> spring_slots_;
 };
 
 }  // namespace weft

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "core/cloth/cloth_model.h"
+#include "core/solver/implicit/conjugate_gradients.h"
 #include "core/solver/implicit/linear_terms.h"
 #include "core/solver/implicit/multigrid.h"
 #include "core/solver/implicit/spring_planes.h"
@@ -49,6 +50,7 @@ class GridSystem {
 
   void apply(const Real* p, Real* y) const { multiply(grid(), p, y); }
   void precondition(const Real* r, Real* z) { multigrid_.precondition(r, z); }
+  LinearEffort effort() const { return {}; }
 
  private:
   const SpringGrid<Real>& grid() const { return multigrid_.finest(); }

@@ -200,9 +200,11 @@ bool take_newton_step(Step<Real>& step, std::size_t p, bool first, double& start
         const LinearVectors<Real> vectors{work.residual.data(),       work.step.data(),
                                           work.direction.data(),      work.product.data(),
                                           work.preconditioned.data(), system.size()};
-        const double enough = first ? 0 : kEnoughOfTolerance * step.solver.tolerance * start;
+        const LinearEffort effort = system.effort();
+        const double tolerance = effort.tolerance * step.solver.tolerance;
+        const double enough = first ? 0 : kEnoughOfTolerance * tolerance * start;
         const LinearSolution found = solve_linear(
-            vectors, step.solver.tolerance, enough,
+            vectors, tolerance, enough, effort.iterations,
             [&](const Real* q, Real* y) {
               system.apply(q, y);
               apply_hands(work, p, q, y);

@@ -66,6 +66,14 @@ class MembraneTerm {
     return {a(0, 0), a(0, 1), a(0, 2), a(1, 1), a(1, 2), a(2, 2)};
   }
 
+  /// Rows of a corner, columns of another one.
+  Matrix between(const MembraneTriangle<Real>& t, std::size_t corner, std::size_t other) const {
+    assert(corner < 3 && other < 3);
+    const CornerGradients<Real> b = corner_gradients<Real>(t);
+    return uu_ * (b.u[corner] * b.u[other]) + vv_ * (b.v[corner] * b.v[other]) +
+           uv_ * (b.u[corner] * b.v[other]) + uv_.transpose() * (b.v[corner] * b.u[other]);
+  }
+
  private:
   void add_tension(const MembraneTensor<Real>& c, const MembraneTriangle<Real>& t,
                    const MembraneStrain<Real>& e, const Vec3<Real>& u, const Vec3<Real>& w) {

@@ -6,6 +6,8 @@
 #include "core/world/world.h"
 #include "tests/support/allocations.h"
 #include "tests/support/cloths.h"
+#include "tests/support/sheets_of_triangles.h"
+#include "tests/support/worlds.h"
 
 // What the solver implicit promises besides its accuracy, which tests/laws/implicit_test.cpp tests.
 
@@ -28,6 +30,18 @@ TEST_CASE("with implicit a tick allocates nothing, and a world that is reset rep
   };
   const std::uint64_t once = run();
   CHECK(run() == once);
+}
+
+TEST_CASE("with implicit a tick of a small mesh allocates nothing, whose matrix it factors") {
+  WorldDef def = empty_world(triangle_sheet(Cut::irregular, 0.3, 0.2, 0.03));
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.solver.kind = SolverKind::implicit;
+  def.pins = upper_border(def.cloths[0]);
+  World<float> world(def);
+  for (int tick = 0; tick < 10; ++tick) world.step();
+  const std::size_t before = count_allocations();
+  for (int tick = 0; tick < 10; ++tick) world.step();
+  CHECK(count_allocations() == before);
 }
 
 TEST_CASE("energy that implicit may give back is forgotten by time, not by ticks: alike to 10 %") {
