@@ -22,6 +22,7 @@ struct Measurement {
   double deepest = 0;         ///< [m]
   int checks = 0;             ///< ticks checked for penetrations and crossings
   int divergences = 0;
+  int damped_substeps = 0;  ///< that `implicit` repeated by backward Euler
   int least_substeps = 0, most_substeps = 0;
   double largest_strain = 0;  ///< over the whole run
   std::size_t cloth_crossings =

@@ -206,6 +206,7 @@ Json summary(const SimulateOptions& options, const World<Real>& world, const Mea
       {"substeps", world.report().substeps},
       {"substeps_of_run", {m.least_substeps, m.most_substeps}},
       {"divergences", m.divergences},
+      {"damped_substeps", m.damped_substeps},
       {"notices", notices}};
 }
 
