@@ -14,19 +14,11 @@ BlockFactor::Block full(const SymmetricBlock<Real>& a) {
   return block.template cast<double>();
 }
 
-/// Calls visit(k, first, second) for each pair of an element's particles.
+/// Calls visit(first, second) for each pair of an element's corners.
 template <class Visitor>
-void visit_pairs(int corners, Visitor&& visit) {
-  std::size_t k = 0;
-  for (int second = 1; second < corners; ++second)
-    for (int first = 0; first < second; ++first) visit(k++, first, second);
-}
-
-void couple(const Index* particles, int corners, CouplingLists& coupled) {
-  visit_pairs(corners, [&](std::size_t, int first, int second) {
-    coupled[static_cast<std::size_t>(particles[first])].push_back(particles[second]);
-    coupled[static_cast<std::size_t>(particles[second])].push_back(particles[first]);
-  });
+void visit_pairs(std::size_t corners, Visitor&& visit) {
+  for (std::size_t second = 1; second < corners; ++second)
+    for (std::size_t first = 0; first < second; ++first) visit(first, second);
 }
 
 }  // namespace
@@ -37,13 +29,46 @@ std::size_t ElementSystem<Real>::products() const {
   return (ends_.size() + stencils_.size()) / 2 + 2 * membrane_.size() + 4 * hinge_terms_.size();
 }
 
+/// Calls visit(i, j, block) for each block that an element adds to the matrix in row i and column
+/// j, i not j, in an order that does not change. `block()` is that block.
+template <class Real>
+template <class Visitor>
+void ElementSystem<Real>::visit_blocks(Visitor&& visit) const {
+  using Block = BlockFactor::Block;
+  for (std::size_t n = 0; n < ends_.size(); ++n)
+    visit(ends_[n][0], ends_[n][1], [&] { return Block(-full<Real>(blocks_[n])); });
+  for (const MembraneElement& element : membrane_) {
+    const MembraneTriangle<Real>& t = element.triangle;
+    visit_pairs(3, [&](std::size_t i, std::size_t j) {
+      visit(t.x[i], t.x[j],
+            [&] { return Block(element.term.between(t, i, j).template cast<double>()); });
+    });
+  }
+  for (const Stencil& stencil : stencils_) {
+    visit_pairs(static_cast<std::size_t>(stencil.count), [&](std::size_t i, std::size_t j) {
+      const Real product = stencil.stiffness * stencil.weight[i] * stencil.weight[j];
+      visit(stencil.x[i], stencil.x[j],
+            [&] { return Block(Block::Identity() * static_cast<double>(product)); });
+    });
+  }
+  for (const HingeTerm& term : hinge_terms_) {
+    visit_pairs(4, [&](std::size_t i, std::size_t j) {
+      visit(term.x[i], term.x[j], [&] {
+        const Eigen::Matrix<Real, 3, 3> block =
+            term.gradient[i] * term.gradient[j].transpose() * term.stiffness;
+        return Block(block.template cast<double>());
+      });
+    });
+  }
+}
+
 template <class Real>
 void ElementSystem<Real>::prepare_factor(const ClothModel<Real>& model) {
   CouplingLists coupled(free_.size());
-  for (const std::array<Index, 2>& ends : ends_) couple(ends.data(), 2, coupled);
-  for (const MembraneElement& element : membrane_) couple(element.triangle.x.data(), 3, coupled);
-  for (const Stencil& stencil : stencils_) couple(stencil.x, stencil.count, coupled);
-  for (const HingeTerm& term : hinge_terms_) couple(term.x, 4, coupled);
+  visit_blocks([&coupled](Index i, Index j, const auto&) {
+    coupled[static_cast<std::size_t>(i)].push_back(j);
+    coupled[static_cast<std::size_t>(j)].push_back(i);
+  });
   for (std::vector<Index>& list : coupled) {
     std::sort(list.begin(), list.end());
     list.erase(std::unique(list.begin(), list.end()), list.end());
@@ -52,17 +77,7 @@ void ElementSystem<Real>::prepare_factor(const ClothModel<Real>& model) {
   for (Index i = particles_.first; i < particles_.end(); ++i)
     places.push_back(model.rest_positions[static_cast<std::size_t>(i)].template cast<double>());
   if (!factor_.prepare(coupled, places, kIterationsOfFactor * products())) return;
-  for (const std::array<Index, 2>& ends : ends_)
-    spring_slots_.push_back(factor_.slot(ends[0], ends[1]));
-  const auto find = [this](const auto& x, int corners, auto& slots) {
-    visit_pairs(corners, [&](std::size_t k, int first, int second) {
-      slots[k] =
-          factor_.slot(x[static_cast<std::size_t>(first)], x[static_cast<std::size_t>(second)]);
-    });
-  };
-  for (MembraneElement& element : membrane_) find(element.triangle.x, 3, element.slots);
-  for (Stencil& stencil : stencils_) find(stencil.x, stencil.count, stencil.slots);
-  for (HingeTerm& term : hinge_terms_) find(term.x, 4, term.slots);
+  visit_blocks([this](Index i, Index j, const auto&) { slots_.push_back(factor_.slot(i, j)); });
 }
 
 /// Assembles and factors the matrix of the last linearisation.
@@ -71,36 +86,14 @@ void ElementSystem<Real>::factor() {
   using Block = BlockFactor::Block;
   factor_.clear();
   const auto is_free = [this](Index i) { return free_[static_cast<std::size_t>(i)] > 0; };
-  const auto add = [&](const BlockFactor::Slot& slot, Index i, Index j, const Block& block) {
-    if (is_free(i) && is_free(j)) factor_.add(slot, block);
-  };
   for (Index i = 0; i < particles_.count; ++i)
     factor_.add_own(i, is_free(i) ? full<Real>(diagonal_[static_cast<std::size_t>(i)])
                                   : Block(Block::Identity()));
-  for (std::size_t n = 0; n < ends_.size(); ++n)
-    add(spring_slots_[n], ends_[n][0], ends_[n][1], -full<Real>(blocks_[n]));
-  for (const MembraneElement& element : membrane_) {
-    const MembraneTriangle<Real>& t = element.triangle;
-    visit_pairs(3, [&](std::size_t k, int first, int second) {
-      const auto i = static_cast<std::size_t>(first), j = static_cast<std::size_t>(second);
-      add(element.slots[k], t.x[i], t.x[j], element.term.between(t, i, j).template cast<double>());
-    });
-  }
-  for (const Stencil& stencil : stencils_) {
-    visit_pairs(stencil.count, [&](std::size_t k, int first, int second) {
-      const Real product = stencil.stiffness * stencil.weight[first] * stencil.weight[second];
-      add(stencil.slots[k], stencil.x[first], stencil.x[second],
-          Block::Identity() * static_cast<double>(product));
-    });
-  }
-  for (const HingeTerm& term : hinge_terms_) {
-    visit_pairs(4, [&](std::size_t k, int first, int second) {
-      const Vec3<Real>&g = term.gradient[static_cast<std::size_t>(first)],
-            &h = term.gradient[static_cast<std::size_t>(second)];
-      add(term.slots[k], term.x[first], term.x[second],
-          (g * h.transpose() * term.stiffness).template cast<double>());
-    });
-  }
+  std::size_t slot = 0;
+  visit_blocks([&](Index i, Index j, const auto& block) {
+    if (is_free(i) && is_free(j)) factor_.add(slots_[slot], block());
+    ++slot;
+  });
   factored_ = factor_.factor();
   uses_ = 0;
 }

@@ -50,7 +50,7 @@ ElementSystem<Real>::ElementSystem(const ClothModel<Real>& model, const ClothPar
       assert(particles_.contains(corner));
       corner -= particles_.first;
     }
-    membrane_.push_back({t, {}, {}});
+    membrane_.push_back({t, {}});
   }
   visit_bending_stencils(
       part, [&](double stiffness, const Index* corners, const double* weights, int corner_count) {

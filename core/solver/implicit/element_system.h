@@ -43,34 +43,29 @@ class ElementSystem {
   }
 
  private:
-  /// Of the pairs (0, 1), (0, 2), (1, 2), (0, 3) ... of an element's particles.
-  template <std::size_t kCorners>
-  using PairSlots = std::array<BlockFactor::Slot, kCorners*(kCorners - 1) / 2>;
-
   /// Energy stiffness/2 |sum_k weight_k x_k|^2.
   struct Stencil {
     Index x[4] = {0, 0, 0, 0};
     Real weight[4] = {0, 0, 0, 0};
     int count = 0;
     Real stiffness = 0;
-    PairSlots<4> slots;
   };
   struct HingeTerm {
     Index x[4];
     std::array<Vec3<Real>, 4> gradient;
     Real stiffness;
-    PairSlots<4> slots;
   };
 
   struct MembraneElement {
     MembraneTriangle<Real> triangle;  ///< particles counted from the part's first
     MembraneTerm<Real> term;
-    PairSlots<3> slots;
   };
 
   std::size_t products() const;
   void prepare_factor(const ClothModel<Real>& model);
   void factor();
+  template <class Visitor>
+  void visit_blocks(Visitor&& visit) const;
   void linearise_membrane(const NewtonPoint<Real>& point, Vec3Array<Real>& force);
 
   std::size_t number_;  ///< of the part
@@ -84,10 +79,10 @@ class ElementSystem {
   std::vector<HingeTerm> hinge_terms_;
   std::vector<SymmetricBlock<Real>> own_, diagonal_, inverse_;
   std::vector<Real> free_;
-  BlockFactor factor_;     ///< empty if it costs more than it saves
-  bool factored_ = false;  ///< it holds the factors of a matrix of this tick
-  std::size_t uses_ = 0;   ///< of these factors
-  std::vector<BlockFactor::Slot> spring_slots_;
+  BlockFactor factor_;                    ///< empty if it costs more than it saves
+  bool factored_ = false;                 ///< it holds the factors of a matrix of this tick
+  std::size_t uses_ = 0;                  ///< of these factors
+  std::vector<BlockFactor::Slot> slots_;  ///< see visit_blocks
 };
 
 }  // namespace weft
