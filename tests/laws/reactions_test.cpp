@@ -105,6 +105,26 @@ TEST_CASE("what a sheet lies on carries its weight: ground and box, moving or st
   CHECK(reactions.contacts.size() >= world.model().mass.size());
 }
 
+TEST_CASE("the gap of a contact is its distance from the ball, also while cloth slips off it") {
+  constexpr double kRadius = 0.1;
+  WorldDef def = sheet_at(0.01);
+  def.cloths[0].fabric.friction = 0.05;
+  const Vec3d centre = def.cloths[0].origin + Vec3d(0.6 * def.cloths[0].width, -0.01 - kRadius, 0);
+  def.colliders = {{"ball", SphereDef{centre, kRadius}}};
+  World<float> world(def);
+  world.measure_forces(true);
+  std::size_t contacts = 0;
+  for (int t = 0; t < 90; ++t) {
+    world.step();
+    for (const ContactPoint& contact : world.reactions()->contacts) {
+      const double distance = (contact.point - centre).norm() - kRadius;
+      REQUIRE(contact.gap == Approx(distance).margin(1e-5));
+      ++contacts;
+    }
+  }
+  CHECK(contacts > 50);
+}
+
 TEST_CASE("friction holds a sheet on a slope: its sum is the weight along it") {
   WorldDef def = sheet_at(0.004);
   def.cloths[0].fabric.friction = 1;

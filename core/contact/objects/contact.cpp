@@ -268,7 +268,15 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
 template <class Real>
 std::vector<ContactPoint> Contact<Real>::contacts(const Vec3Array<Real>& x) {
   note_lone(rows_, response_, log_);
-  return log_.contacts(rows_.all, x, kTouching, static_cast<double>(motion_.tick_seconds));
+  std::vector<ContactPoint> contacts =
+      log_.contacts(rows_.all, x, kTouching, static_cast<double>(motion_.tick_seconds));
+  // The plane of a contact is that of its last row, which the cloth may have left since.
+  for (ContactPoint& contact : contacts) {
+    const Vec3<Real> point = contact.point.template cast<Real>();
+    const Real distance = distance_from(shapes_, at_index(contact.collider), point);
+    if (distance < Real(kFarAway)) contact.gap = static_cast<double>(distance);
+  }
+  return contacts;
 }
 
 template <class Real>
