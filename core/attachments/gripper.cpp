@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "core/attachments/constants.h"
+#include "core/contact/colliders/constants.h"
 #include "core/error.h"
 
 namespace weft {
@@ -19,32 +20,70 @@ Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
   return def.orientation * Vec3d(jaw == 0 ? -x : x, 0, 0);
 }
 
+/// A way of the middle without what goes into single layers that jaws pinch against other objects:
+/// they stand where these have their thickness. Jaws that do not grip press them besides, with the
+/// gripper's force in all, less what resists already; those that close with no more than they will
+/// grip with: they rub, and bunch cloth as they close.
+/// @param seconds  of the last tick, whose impulses the jaws still have
+/// @param step     wanted [m]
+Vec3d stand_on_layers(const Gripper& gripper, double seconds, Vec3d step,
+                      ColliderStates& colliders) {
+  assert(seconds > 0);
+  const Vec3d wanted = step;
+  double standing = 0, resistance = 0;  // jaws; [N]
+  for (const std::size_t k : gripper.jaw) {
+    ColliderState& jaw = colliders[k];
+    const Vec3d& into = jaw.pinch.direction;
+    jaw.stands = jaw.pinches() && wanted.dot(into) > kPressingDepth;
+    if (!jaw.stands) continue;
+    ++standing;
+    resistance += std::max(0.0, jaw.impulse.dot(into) / seconds);
+    const double most = kYieldSpeed * seconds;
+    const double back = std::clamp(jaw.pinch.lack / 2, -most, most);
+    step -= into * std::max(0.0, step.dot(into) + back);
+  }
+  const bool closes = gripper.wanted < gripper.opening;
+  const double hold =
+      closes ? std::min(gripper.force, gripper.def.max_force) : gripper.def.max_force;
+  const bool presses = !gripper.gripping && hold > resistance;
+  for (const std::size_t k : gripper.jaw) {
+    ColliderState& jaw = colliders[k];
+    jaw.press = {};
+    if (jaw.stands && presses)
+      jaw.press = {jaw.pinch.direction, hold / standing, (hold - resistance) / standing,
+                   jaw.pinch.other};
+    jaw.pinch = {.braces = jaw.pinch.braces};
+  }
+  return step;
+}
+
 /// Pose of the gripper's middle after a tick, along a straight line and by the shortest turn.
-Pose next_pose(const Gripper& gripper, double seconds) {
+/// @param offset  to where it may go [m]
+Pose next_pose(const Gripper& gripper, const Vec3d& offset, double seconds) {
   assert(seconds > 0 && gripper.speed > 0 && gripper.turn_speed > 0);
-  const Vec3d offset = gripper.target.position - gripper.pose.position;
   const Vec3d turn = rotation_vector(gripper.target.rotation * gripper.pose.rotation.conjugate());
   double fraction = 1;
   if (offset.norm() > gripper.speed * seconds) fraction = gripper.speed * seconds / offset.norm();
   if (turn.norm() * fraction > gripper.turn_speed * seconds)
     fraction = gripper.turn_speed * seconds / turn.norm();
-  if (fraction == 1) return gripper.target;
+  const bool arrives = offset == gripper.target.position - gripper.pose.position;
+  if (fraction == 1 && arrives) return gripper.target;
   return moved(gripper.pose, {offset * fraction, turn * fraction}, 1);
 }
 
 /// Pose of the middle at the end of the tick. Jaws that cannot close because they stand, as where
 /// they have been sent into cloth on a table, draw back until they can, and stay there until they
 /// are sent elsewhere.
-Pose next_middle(double seconds, double thickest, const ColliderStates& colliders,
-                 Gripper& gripper) {
+Pose next_middle(double seconds, double thickest, ColliderStates& colliders, Gripper& gripper) {
   const bool closes = gripper.wanted < gripper.opening && !gripper.gripping;
   const bool stands = colliders[gripper.jaw[0]].blocked || colliders[gripper.jaw[1]].blocked;
   gripper.stays = gripper.wanted < gripper.opening && (gripper.stays || (closes && stands));
-  if (!gripper.stays) return next_pose(gripper, seconds);
-  Pose middle = gripper.pose;
-  const Vec3d ahead = gripper.target.position - middle.position;
-  if (closes && stands) middle.position -= ahead.normalized() * (kJawRetreat * thickest);
-  return middle;
+  const Vec3d ahead = gripper.target.position - gripper.pose.position;
+  Vec3d back = Vec3d::Zero();
+  if (closes && stands) back = -ahead.normalized() * (kJawRetreat * thickest);
+  const Vec3d left = stand_on_layers(gripper, seconds, gripper.stays ? back : ahead, colliders);
+  if (!gripper.stays) return next_pose(gripper, left, seconds);
+  return {gripper.pose.position + left, gripper.pose.rotation};
 }
 
 /// Whether the jaws were stopped by more than the layer that both have in front of them: by
@@ -206,6 +245,7 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
       jaw.pace = {};
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
       jaw.layered = layered;
+      if (jaw.press.acts()) continue;  // on another object
       const double hold = gripper.gripping ? gripper.force : 0;
       const double squeeze = hold - (jaw.layered ? std::min(resistance, hold) : 0);
       jaw.press = {press_of(gripper, k), hold, squeeze};
@@ -227,6 +267,8 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     if ((gripper.pose.position - gripper.target.position).norm() < kArrivalDistance)
       gripper.pose.position = gripper.target.position;
     gripper.opening = std::max(0.0, axis.dot(between) - 2 * gripper.def.half_extents[0]);
+    if (std::abs(gripper.opening - gripper.wanted) < kArrivalDistance)
+      gripper.opening = gripper.wanted;  // by rounding it would be closing for ever
     gripper.facing = std::min(left.facing, right.facing);
     if (gripper.wanted >= gripper.opening) continue;
     const double clearance = 2 * gripper.facing * (1 + kJawFacingSlack);

@@ -154,9 +154,39 @@ Twist slowed(const Twist& motion, double seconds, Pace& pace) {
   return {left + (motion.linear - into) * along, motion.angular * along};
 }
 
+/// What a collider has given to the cloth.
+struct Resisted {
+  Vec3d impulse;  // [N s]
+  Vec3d angular;  // about its pivot [N m s]
+
+  /// The work of that in a motion, per second of it [W s].
+  double power(const Twist& motion) const {
+    return impulse.dot(motion.linear) + angular.dot(motion.angular);
+  }
+};
+
+/// What has been given since the last call.
+Resisted take_uncounted(ColliderState& state) {
+  const Resisted given{state.impulse - state.counted,
+                       state.angular_impulse - state.angular_counted};
+  state.counted = state.impulse;
+  state.angular_counted = state.angular_impulse;
+  return given;
+}
+
+/// Compares what resists a motion with the force [N s].
+/// @return whether it has exceeded the force for longer than an impact lasts
+bool add_overload(double resisted, double seconds, ColliderState& state) {
+  assert(seconds > 0 && state.max_force > 0);
+  const double most = state.max_force * kImpactSeconds;
+  state.overload =
+      std::clamp(state.overload + resisted - state.max_force * seconds, 0.0, most * kMostOverload);
+  return state.overload > most;
+}
+
 void clear_impulses(ColliderState& state) {
   for (Vec3d* sum : {&state.impulse, &state.pushed, &state.angular_impulse, &state.counted,
-                     &state.angular_counted, &state.squeezed})
+                     &state.angular_counted, &state.besides})
     sum->setZero();
 }
 
@@ -260,20 +290,31 @@ void take_back_motion(ColliderStates& states) {
 }
 
 bool count_resistance(double seconds, ColliderState& state) {
-  assert(seconds > 0);
-  const Vec3d impulse = state.impulse - state.counted;
-  const Vec3d angular = state.angular_impulse - state.angular_counted;
-  state.counted = state.impulse;
-  state.angular_counted = state.angular_impulse;
+  const Resisted given = take_uncounted(state);
   if (state.wanted.is_zero()) return false;
-  const double along =
-      (impulse.dot(state.wanted.linear) + angular.dot(state.wanted.angular)) / surface_speed(state);
+  const double along = given.power(state.wanted) / surface_speed(state);
   const bool presses = state.wanted.linear.dot(state.pace.against) > 0;
-  const double resisted = std::max(along, presses ? impulse.dot(state.pace.against) : 0);
-  const double most = state.max_force * kImpactSeconds;
-  state.overload =
-      std::clamp(state.overload + resisted - state.max_force * seconds, 0.0, most * kMostOverload);
-  return state.overload > most;
+  const double resisted = std::max(along, presses ? given.impulse.dot(state.pace.against) : 0);
+  return add_overload(resisted, seconds, state);
+}
+
+bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate) {
+  const Resisted given = take_uncounted(jaw), by_mate = take_uncounted(mate);
+  const Vec3d axis = (mate.pose.position - jaw.pose.position).normalized();
+  const Vec3d apart = (jaw.wanted.linear - mate.wanted.linear) / 2;
+  const Vec3d closing = axis * axis.dot(apart);
+  const Twist wanted{jaw.wanted.linear - closing, jaw.wanted.angular};
+  const Twist mates{mate.wanted.linear + closing, mate.wanted.angular};
+  const double speed = (wanted.linear + mates.linear).norm() / 2 + (apart - closing).norm() +
+                       wanted.angular.norm() * jaw.radius;
+  bool stands = false;
+  if (speed > 0)
+    stands = add_overload((given.power(wanted) + by_mate.power(mates)) / speed, seconds, jaw);
+  if (!closing.isZero(0)) {
+    const double resisted = (given.impulse - by_mate.impulse).dot(closing.normalized()) / 2;
+    stands |= add_overload(resisted, seconds, mate);
+  }
+  return stands;
 }
 
 void advance_collider(double seconds, double tick_seconds, ColliderState& state) {
@@ -290,7 +331,7 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
   assert(seconds > 0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
-    state.force = -(state.impulse + state.squeezed) / seconds;
+    state.force = -(state.impulse + state.besides) / seconds;
     if (state.wanted.is_zero()) continue;
     state.pace = next_paces(state, colliders[k].max_force, seconds);
   }

@@ -18,12 +18,13 @@ struct Pinch {
   bool braces = false;              ///< another one pinches cloth against it
 };
 
-/// How a jaw of a gripper presses cloth in a tick, or an object a single layer on another one.
+/// How a jaw of a gripper presses cloth on the other jaw in a tick, or an object or a jaw a single
+/// layer on another object.
 struct Press {
   Vec3d direction = Vec3d::Zero();  ///< unit; zero: it does not press
   double hold = 0;                  ///< force whose friction holds what it presses [N]
   double squeeze = 0;               ///< its part that the cloth does not resist yet [N]
-  Index other = kNone;              ///< the object that it presses the layer on; not of jaws
+  Index other = kNone;              ///< the object that it presses on; kNone: the other jaw
 
   bool acts() const { return !direction.isZero(0); }
 };
@@ -65,9 +66,10 @@ struct ColliderState {
   bool bracing = false;  ///< another object did in the last tick
 
   Press press;
-  Vec3d squeezed = Vec3d::Zero();  ///< impulse of its squeeze so far in the tick [N s]
-  bool layered = false;            ///< a jaw grips several layers, which resist it
-  double facing = 0;               ///< thickness of the cloth in front of a jaw; 0: none [m]
+  Vec3d besides = Vec3d::Zero();  ///< what counts in its force alone, so far in the tick [N s]
+  bool layered = false;           ///< a jaw grips several layers, which resist it
+  bool stands = false;            ///< a jaw does, on a layer on another object
+  double facing = 0;              ///< thickness of the cloth in front of a jaw; 0: none [m]
 
   // Its force limit within a substep: beyond it, the collider stands.
   double radius = 0;              ///< of the surface about the pivot [m]
@@ -120,6 +122,11 @@ void take_back_motion(ColliderStates& states);
 /// @return whether it must stand: the resistance exceeds its force, for longer than an impact
 ///         lasts
 bool count_resistance(double seconds, ColliderState& state);
+
+/// The same for both jaws of a gripper, whose force is that of one: what resists their motion
+/// together exceeds it, or what resists each of them as they close or open. The overload of the
+/// first is that of the former, the second one's that of the latter.
+bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate);
 
 /// Moves a collider by part of the tick [s]; it ends exactly at its goal.
 void advance_collider(double seconds, double tick_seconds, ColliderState& state);

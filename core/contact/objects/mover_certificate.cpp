@@ -49,7 +49,7 @@ bool keep_off_mover(ObjectCertificate<Real>& c, const ContactRow<Real>& row) {
     state.v[i] += normal * (std::max(least - end, behind) / c.dt * Real(kLiftSlack));
     const Real gained = (state.v[i].squaredNorm() - before.squaredNorm()) / 2;
     c.motion.work += std::max(0.0, static_cast<double>(gained / state.inverse_mass[i]));
-    if (c.log.wanted()) log_stop(c, row, k, before);
+    tell_stop(c, row, k, before);
   }
   return kept;
 }
@@ -89,7 +89,7 @@ bool hold_row(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool carr
     } else {
       continue;
     }
-    if (c.log.wanted() && !held) log_stop(c, row, k, before);
+    if (!held) tell_stop(c, row, k, before);
     changed = true;
   }
   return changed;

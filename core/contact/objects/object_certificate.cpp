@@ -52,7 +52,7 @@ void log_hold(ObjectCertificate<Real>& c, std::size_t i, const Vec3<Real>& befor
       least = room;
     }
   }
-  if (nearest) log_stop(c, *nearest, place, before);
+  if (nearest) tell_stop(c, *nearest, place, before);
 }
 
 /// Holds particles that would go beyond the reach within which the planes are all that matters. Not
@@ -87,14 +87,21 @@ bool measure_travel(const ClothState<Real>& state, Real dt, Real less, Executor*
 }
 
 template <class Real>
-void log_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size_t k,
-              const Vec3<Real>& before) {
+void tell_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size_t k,
+               const Vec3<Real>& before) {
+  assert(k < row.count);
+  const auto i = at_index(row.particle[k]);
+  const Vec3<Real> change = c.state.v[i] - before;
+  if (row.mover != kNone) {
+    assert(c.state.inverse_mass[i] > 0 && "what is held is not stopped");
+    const Vec3<Real> impulse = change / c.state.inverse_mass[i];
+    (*c.motion.colliders)[at_index(row.collider)].besides += impulse.template cast<double>();
+  }
+  if (!c.log.wanted()) return;
   ContactRow<Real> single = row;
   single.particle = {row.particle[k], 0, 0};
   single.weight = {Real(1), 0, 0};
   single.count = 1;
-  assert(c.log.wanted() && k < row.count);
-  const Vec3<Real> change = c.state.v[at_index(row.particle[k])] - before;
   c.log.add_apart(single, change, c.state);
 }
 
@@ -114,7 +121,7 @@ bool keep_off(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool hold
       state.v[i].setZero();
     else
       state.v[i] += row.normal * ((least - end) / c.dt * Real(kLiftSlack));
-    if (c.log.wanted()) log_stop(c, row, k, before);
+    tell_stop(c, row, k, before);
   }
   return kept;
 }
@@ -143,6 +150,6 @@ void certify(ObjectCertificate<Real>& c, bool others) {
   hold_within_reach(c);
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(measure_travel, log_stop, keep_off, certify)
+WEFT_INSTANTIATE_FUNCTIONS(measure_travel, tell_stop, keep_off, certify)
 
 }  // namespace weft

@@ -69,10 +69,10 @@ void certify_with_movers(ObjectCertificate<Real>& c);
 template <class Real>
 bool keep_off(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool hold);
 
-/// Notes the impulse by which the certificate stopped particle k of a row.
+/// Tells the impulse by which the certificate stopped particle k of a row.
 /// @param before  its velocity until then [m/s]
 template <class Real>
-void log_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size_t k,
-              const Vec3<Real>& before);
+void tell_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::size_t k,
+               const Vec3<Real>& before);
 
 }  // namespace weft

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cassert>
+#include <utility>
 
+#include "core/contact/colliders/constants.h"
 #include "core/contact/objects/constants.h"
 #include "core/instantiate.h"
 
@@ -16,19 +18,41 @@ bool goes_into_pinch(const ColliderState& state) {
   return !state.press.acts() && state.twist.linear.dot(state.pinch.direction) > 0;
 }
 
+/// The same of a jaw, by the motion of both: they close on what both have in front of them.
+bool goes_into_pinch(const ColliderState& jaw, const ColliderState& mate) {
+  if (jaw.stands || !jaw.pinches()) return false;
+  return (jaw.twist.linear + mate.twist.linear).dot(jaw.pinch.direction) > kTurningSpeed;
+}
+
+/// Whether both jaws of a gripper stand in the coming substep.
+bool jaws_stand(double dt, ColliderState& jaw, ColliderState& mate) {
+  return count_resistance(dt, jaw, mate) || goes_into_pinch(jaw, mate) ||
+         goes_into_pinch(mate, jaw);
+}
+
+/// Whether an object stands that is not a jaw. What yields already goes on.
+bool object_stands(double dt, ColliderState& state) {
+  const bool overloaded = count_resistance(dt, state) && !state.pace.yields();
+  return overloaded || goes_into_pinch(state);
+}
+
 /// Objects that have been resisted by more than their force stand in the coming substep, and both
-/// jaws if one does; and what has begun to pinch a layer. What yields already goes on.
+/// jaws if one does; and what has begun to pinch a layer.
 template <class Real>
 void stop_overloaded(double dt, ColliderStates& colliders, ObjectShapes<Real>& shapes) {
+  const auto rest = [&shapes](std::size_t k) {
+    shapes.frames[k].rest = std::max(shapes.frames[k].rest, 1);
+  };
   for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
-    ColliderFrame<Real>& frame = shapes.frames[k];
-    if (frame.tracked && goes_into_pinch(colliders[k])) frame.rest = std::max(frame.rest, 1);
-    if (!frame.tracked || !count_resistance(dt, colliders[k]) || colliders[k].pace.yields())
+    if (!shapes.frames[k].tracked) continue;
+    if (!colliders[k].is_jaw()) {
+      if (object_stands(dt, colliders[k])) rest(k);
       continue;
-    frame.rest = std::max(frame.rest, 1);
-    if (colliders[k].mate == kNone) continue;
-    ColliderFrame<Real>& mate = shapes.frames[at_index(colliders[k].mate)];
-    mate.rest = std::max(mate.rest, 1);
+    }
+    const std::size_t mate = at_index(colliders[k].mate);
+    if (mate < k || !jaws_stand(dt, colliders[k], colliders[mate])) continue;
+    rest(k);
+    rest(mate);
   }
 }
 
@@ -41,7 +65,8 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
   motion.tick_seconds = static_cast<Real>(tick_seconds);
   motion.colliders = colliders;
   motion.work = 0;
-  motion.any_tracked = motion.any_press = false;
+  const bool moved = std::exchange(motion.any_tracked, false);
+  motion.any_press = false;
   motion.surface_speed = 0;
   if (!colliders) {
     for (ColliderFrame<Real>& frame : shapes.frames) frame.tracked = false;
@@ -52,10 +77,12 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
   for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
     ColliderFrame<Real>& frame = shapes.frames[k];
     ColliderState& state = (*colliders)[k];
-    const bool tracked = state.is_active() || state.bracing;
+    const bool moves = state.is_active() || state.bracing;
+    // Jaws are asked what cloth does to them, also where they stand.
+    const bool tracked = moves || state.is_jaw();
     rows_go |= tracked && !frame.tracked;  // the old ones do not follow it
     frame.tracked = tracked;
-    motion.any_tracked = motion.any_tracked || tracked;
+    motion.any_tracked = motion.any_tracked || moves;
     motion.any_press = motion.any_press || state.press.acts();
     state.facing = 0;
     // What slips out of jaws goes round their rims, where planes that stay would stop it for ever.
@@ -64,7 +91,7 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
     const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
     motion.surface_speed = std::max(motion.surface_speed, static_cast<Real>(speed));
   }
-  return rows_go;
+  return rows_go || (motion.any_tracked && !moved);
 }
 
 template <class Real>

@@ -20,9 +20,8 @@ constexpr double kAlike = 1e-4;
 /// First touch of a particle that has none yet.
 constexpr Index kNoTouch = kNone - 1;
 
-/// Jaws, which close on what both have in front of them, are grippers' own affair.
 bool may_pinch(const ColliderState& collider) {
-  return collider.is_active() && !collider.forced && !collider.is_jaw();
+  return collider.is_active() && !collider.forced;
 }
 
 template <class Real>
@@ -86,10 +85,12 @@ void list_touches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
 }
 
 /// Whether another object is behind each particle that carries a row of an object that comes. Adds
-/// the rows of these others.
+/// the rows of these others. Of jaws the other one is none: what both have in front of them is the
+/// gripper's own affair.
+/// @param mate  of a jaw, the other one; kNone: the object is none
 /// @param lack  set to what the layer lacks of its thickness at the row's point [m]
 template <class Real>
-bool is_backed(const ObjectRows<Real>& rows, const Vec3Array<Real>& x, PinchRow& front,
+bool is_backed(const ObjectRows<Real>& rows, const Vec3Array<Real>& x, Index mate, PinchRow& front,
                Pinches& pinches, Real& lack) {
   const ContactRow<Real>& row = rows.all[front.row];
   Real behind = 0, weights = 0;
@@ -101,8 +102,8 @@ bool is_backed(const ObjectRows<Real>& rows, const Vec3Array<Real>& x, PinchRow&
     for (; at != kNoTouch; at = pinches.touches[at_index(at)].next) {
       const std::size_t r = pinches.touches[at_index(at)].row;
       const ContactRow<Real>& other = rows.all[r];
-      if (other.collider == row.collider || !(other.normal.dot(row.normal) < -Real(kFacing)))
-        continue;
+      if (other.collider == row.collider || other.collider == mate) continue;
+      if (!(other.normal.dot(row.normal) < -Real(kFacing))) continue;
       pinches.backs.push_back({r, front.object, front.object});
       front.other = at_index(other.collider);
       most = std::max(most, other.thickness - gap_of(other, x));
@@ -196,7 +197,7 @@ void find_pinches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
   for (std::size_t n = 0; n < pinches.fronts.size(); ++n) {
     PinchRow& front = pinches.fronts[n];
     Real lack = 0;
-    if (!is_backed(rows, x, front, pinches, lack)) continue;
+    if (!is_backed(rows, x, colliders[front.object].mate, front, pinches, lack)) continue;
     ColliderState& object = colliders[front.object];
     object.pinch.lack = std::max(object.pinch.lack, static_cast<double>(lack));
     object.pinch.other = static_cast<Index>(front.other);

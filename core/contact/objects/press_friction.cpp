@@ -13,21 +13,22 @@
 namespace weft {
 namespace {
 
-/// Lists the moving rows that a jaw grips.
-/// @param k  number of the jaw's collider
+/// Lists the moving rows that a jaw grips, or would.
+/// @param k      number of the jaw's collider
+/// @param press  direction in which it closes, unit
 template <class Real>
-void list_gripped(std::size_t k, const Vec3Array<Real>& x, ObjectRows<Real>& rows,
-                  ColliderState& jaw, std::vector<GrippedRow>& gripped) {
+void list_gripped(std::size_t k, const Vec3d& press, const Vec3Array<Real>& x,
+                  ObjectRows<Real>& rows, ColliderState& jaw, std::vector<GrippedRow>& gripped) {
   assert(jaw.press.acts() && jaw.is_jaw());
   gripped.clear();
   jaw.facing = 0;
-  const Vec3<Real> press = jaw.press.direction.template cast<Real>();
+  const Vec3<Real> way = press.template cast<Real>();
   const Real slack = Real(jaw.layered ? kSqueezedLayers : kSqueezed);
   for (std::size_t m = 0; m < rows.moving.size(); ++m) {
     MovingRow<Real>& moving = rows.moving[m];
     if (moving.collider != k) continue;
     const ContactRow<Real>& row = rows.all[moving.row];
-    if (!row.responds || !(row.normal.dot(press) > Real(kFacing))) continue;
+    if (!row.responds || !(row.normal.dot(way) > Real(kFacing))) continue;
     const Real gap = row.normal.dot(weighted(row, x)) - row.offset;
     if (gap < row.thickness * Real(kBeforeJaw))
       jaw.facing = std::max(jaw.facing, static_cast<double>(row.thickness));
@@ -90,9 +91,10 @@ Press press_of(std::size_t k, const ColliderStates& colliders) {
 }
 
 /// Shares what an object presses with among the listed rows, all of one object.
+/// @param tells  whether these rows are told as those that press
 /// @return the friction that they allow in this step [N s]
 template <class Real>
-Real share(const Press& press, Real dt, const std::vector<GrippedRow>& gripped,
+Real share(const Press& press, Real dt, const std::vector<GrippedRow>& gripped, bool tells,
            ObjectSolve<Real>& solve) {
   assert(press.squeeze >= 0 && press.squeeze <= press.hold);
   ObjectRows<Real>& rows = solve.rows;
@@ -106,12 +108,50 @@ Real share(const Press& press, Real dt, const std::vector<GrippedRow>& gripped,
     const Real part = share * moving.grip;  // [s]
     // Rows at the rim lean, and their normals would not cancel those of the other jaw.
     const Vec3d impulse = press.direction * (press.squeeze * static_cast<double>(part));
-    (*solve.motion.colliders)[moving.collider].squeezed += impulse;
-    if (solve.log.wanted()) solve.log.add_squeeze(rows.all, moving.row, impulse);
+    (*solve.motion.colliders)[moving.collider].besides += impulse;
+    if (tells && solve.log.wanted()) solve.log.add_squeeze(rows.all, moving.row, impulse);
     moving.grip = static_cast<Real>(press.hold) * part * moving.mobility * row.friction;
     allowed += moving.grip / moving.mobility;
   }
   return allowed;
+}
+
+/// Tells the squeeze of a jaw as that of the particles that both jaws hold, by their mass: so both
+/// press at the same places, as their squeezes cancel in the cloth, wherever rows lie at the rim of
+/// one of them. A few particles are not where the jaws press.
+/// @param gripped   rows of the jaw
+/// @param opposite  those of the other one
+/// @return whether there are enough of such particles
+template <class Real>
+bool tell_squeeze(const Press& press, Real dt, const std::vector<GrippedRow>& gripped,
+                  const std::vector<GrippedRow>& opposite, ObjectSolve<Real>& solve) {
+  const ObjectRows<Real>& rows = solve.rows;
+  constexpr int kOpposite = 0, kBoth = 1;
+  std::vector<int>& held = solve.response.changed;  // each particle; free until the rows are swept
+  held.assign(solve.state.v.size(), kNone);
+  const auto for_particles = [&rows](const std::vector<GrippedRow>& list, auto&& visit) {
+    for (const GrippedRow& g : list) {
+      const ContactRow<Real>& row = rows.all[rows.moving[g.moving].row];
+      if (row.count == 1) visit(at_index(row.particle[0]), rows.moving[g.moving]);
+    }
+  };
+  for_particles(opposite, [&](std::size_t i, const MovingRow<Real>&) { held[i] = kOpposite; });
+  double mass = 0;
+  int particles = 0;
+  for_particles(gripped, [&](std::size_t i, const MovingRow<Real>& moving) {
+    if (held[i] != kOpposite) return;
+    held[i] = kBoth;
+    mass += 1 / static_cast<double>(moving.mobility);
+    ++particles;
+  });
+  if (particles < kHoldAlone) return false;
+  const Vec3d impulse = press.direction * (press.squeeze * static_cast<double>(dt) / mass);
+  for_particles(gripped, [&](std::size_t i, const MovingRow<Real>& moving) {
+    if (held[i] != kBoth) return;
+    held[i] = kNone;  // of a particle with two rows one is enough
+    solve.log.add_squeeze(rows.all, moving.row, impulse / static_cast<double>(moving.mobility));
+  });
+  return true;
 }
 
 /// Lets rows of one side rub from the start, in the direction in which their object slips past the
@@ -150,9 +190,9 @@ void share_press(std::size_t k, const ObjectShapes<Real>& shapes, Real dt,
   list_pinched(k, solve.pinches.fronts, solve.rows, colliders, front);
   list_pinched(k, solve.pinches.backs, solve.rows, colliders, back);
   Press press = press_of(k, colliders);
-  const Real before = share(press, dt, front, solve);
+  const Real before = share(press, dt, front, true, solve);
   press.direction = -press.direction;
-  const Real behind = share(press, dt, back, solve);
+  const Real behind = share(press, dt, back, true, solve);
   if (!(before > 0 && behind > 0)) return;
   const Real both = std::min(before, behind);
   begin_slip(front, shapes, std::min(both / before, Real(1)), solve);
@@ -160,6 +200,32 @@ void share_press(std::size_t k, const ObjectShapes<Real>& shapes, Real dt,
 }
 
 }  // namespace
+
+/// Jaw `k` presses what it holds on the other jaw.
+template <class Real>
+void share_grip(std::size_t k, Real dt, ObjectSolve<Real>& solve) {
+  ColliderStates& colliders = *solve.motion.colliders;
+  ColliderState& jaw = colliders[k];
+  std::vector<GrippedRow>&gripped = solve.response.gripped, &opposite = solve.response.braced;
+  list_gripped(k, jaw.press.direction, solve.state.x, solve.rows, jaw, gripped);
+  if (jaw.press.hold == 0) return;
+  bool told = false;
+  if (solve.log.wanted()) {
+    const std::size_t mate = at_index(jaw.mate);
+    list_gripped(mate, -jaw.press.direction, solve.state.x, solve.rows, colliders[mate], opposite);
+    told = tell_squeeze(jaw.press, dt, gripped, opposite, solve);
+  }
+  share(jaw.press, dt, gripped, !told, solve);
+}
+
+/// Finds what a jaw has in front of it that presses on another object, where it may close.
+template <class Real>
+void note_facing(std::size_t k, ObjectSolve<Real>& solve) {
+  ColliderStates& colliders = *solve.motion.colliders;
+  ColliderState& jaw = colliders[k];
+  const Vec3d closing = colliders[at_index(jaw.mate)].pose.position - jaw.pose.position;
+  list_gripped(k, closing.normalized(), solve.state.x, solve.rows, jaw, solve.response.gripped);
+}
 
 /// Two jaws that hold cloth press it from both sides; the impulses of that cancel in the cloth and
 /// are not solved for, but reported as forces, as far as layers do not resist with them already.
@@ -179,12 +245,12 @@ void share_hold(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real
   for (std::size_t k = 0; k < colliders.size(); ++k) {
     ColliderState& object = colliders[k];
     if (!object.press.acts()) continue;
-    if (!object.is_jaw()) {
-      share_press(k, shapes, dt, solve);
+    if (object.is_jaw() && object.press.other == kNone) {
+      share_grip(k, dt, solve);
       continue;
     }
-    list_gripped(k, solve.state.x, solve.rows, object, solve.response.gripped);
-    if (object.press.hold > 0) share(object.press, dt, solve.response.gripped, solve);
+    if (object.is_jaw()) note_facing(k, solve);
+    share_press(k, shapes, dt, solve);
   }
 }
 

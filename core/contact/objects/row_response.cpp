@@ -25,17 +25,34 @@ Vec3<Real> velocity_over(const ObjectRows<Real>& rows, const ContactRow<Real>& r
   return over;
 }
 
+/// Where a row's point is pushed out, by a length of 1 along its normal. Between jaws that hold
+/// cloth it is pushed as they press: rows at their rims lean, and push after push would lead the
+/// cloth along the jaws, where friction holds velocities alone.
+template <class Real>
+Vec3<Real> push_way(const ObjectSolve<Real>& solve, const ContactRow<Real>& row) {
+  const MovingRow<Real>* const moving = solve.rows.moving_of(row);
+  if (!moving) return row.normal;
+  const ColliderState& object = (*solve.motion.colliders)[moving->collider];
+  if (!object.is_jaw() || object.press.other != kNone || object.press.hold == 0) return row.normal;
+  const Vec3<Real> press = object.press.direction.template cast<Real>();
+  const Real facing = row.normal.dot(press);
+  return facing > Real(kFacing) ? Vec3<Real>(press / facing) : row.normal;
+}
+
 /// Returns particles that a push brought too near to any plane to where they were: between objects
 /// that close, or where cloth is drawn between two, one pushes it out into the other. What started
 /// inside is led out however its edges lie.
 template <class Real>
-void take_back_pushes(const ObjectRows<Real>& rows, const Vec3Array<Real>& x_unpushed,
+void take_back_pushes(const ObjectSolve<Real>& solve, const Vec3Array<Real>& x_unpushed,
                       Real smallest_gap, Vec3Array<Real>& x) {
-  const auto leaves = [&rows](const ContactRow<Real>& row) {
-    return row.mover == kNone &&
-           std::any_of(rows.exits.begin(), rows.exits.end(), [&row](const BadStart<Real>& exit) {
-             return static_cast<Index>(exit.collider) == row.collider && exit.cloth == row.cloth;
-           });
+  const ObjectRows<Real>& rows = solve.rows;
+  const auto leaves = [&solve](const ContactRow<Real>& row) {
+    const auto collider = at_index(row.collider);
+    if (row.mover != kNone && (*solve.motion.colliders)[collider].is_active()) return false;
+    const std::vector<BadStart<Real>>& exits = solve.rows.exits;
+    return std::any_of(exits.begin(), exits.end(), [&row, collider](const BadStart<Real>& exit) {
+      return exit.collider == collider && exit.cloth == row.cloth;
+    });
   };
   for (const ContactRow<Real>& row : rows.all) {
     if (!rows.exits.empty() && leaves(row)) continue;
@@ -270,10 +287,10 @@ void push_out(ObjectSolve<Real>& solve, Real smallest_gap, Real dt) {
     if (!(lack > Real(kTouchSlack))) continue;
     if (!moves && response.pushed.empty()) response.x_unpushed = state.x;
     const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
-    share_out<Real>(row, row.normal * step, state.x);
+    share_out<Real>(row, push_way(solve, row) * step, state.x);
     response.pushed.push_back(r);
   }
-  if (!response.pushed.empty()) take_back_pushes(rows, response.x_unpushed, smallest_gap, state.x);
+  if (!response.pushed.empty()) take_back_pushes(solve, response.x_unpushed, smallest_gap, state.x);
   // A lone particle leaves the only plane that it could come too near to.
   respond_alone(solve, dt, true);
 }
