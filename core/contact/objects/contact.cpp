@@ -177,8 +177,8 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
   bool hold = clearance_.collected && reach_.made;
   {
     const StageTimer timer(profile, Stage::broad_phase, 0);
-    // Objects have taken a part of the reach, and will take more.
-    const Real less = motion_.since_rows + motion_.coming;
+    // Objects have taken a part of the reach, and will take more; from what bounces off them twice.
+    const Real less = motion_.since_rows + motion_.coming * (cloths_.bounces ? 2 : 1);
     hold = (hold && measure_travel(state, dt, less, executor_, reach_)) ||
            renew_clear(state, dt, profile);
   }

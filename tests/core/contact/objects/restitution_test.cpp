@@ -146,6 +146,38 @@ TEST_CASE("a sheet dropped flat bounces to the square of restitution times its h
   }
 }
 
+TEST_CASE("an object that hits resting cloth gives and tells 1 + e times the momentum, whenever") {
+  constexpr double kSpeed = 2, kRestitution = 0.5, kTickRate = 240;
+  const double stretch = GENERATE(500.0, 2000.0);
+  const int arrival = GENERATE(range(0, 24));
+  CAPTURE(stretch, arrival);
+  ClothDef cloth = flat_cloth(5, 5, 0.2, 0.2);
+  cloth.fabric.thickness = 0.002;
+  cloth.fabric.restitution = kRestitution;
+  cloth.fabric.stretch_warp = cloth.fabric.stretch_weft = stretch;
+  const double way = kSpeed * (0.05 + arrival / (24 * kTickRate));
+  cloth.origin = Vec3d(0, 0.1 + cloth.fabric.thickness + way, 0);
+  WorldDef def = empty_world(cloth);
+  def.tick_rate = kTickRate;
+  ColliderDef box;
+  box.shape = BoxDef{Vec3d(0.1, 0, 0.1), Vec3d(0.5, 0.1, 0.5), Eigen::Quaterniond::Identity()};
+  box.max_force = 1e6;
+  box.motion.keyframes = {{0, Vec3d::Zero()}, {0.1, Vec3d(0, 0.1 * kSpeed, 0)}};
+  def.colliders = {box};
+  World<float> hit(def);
+  double told = 0, mass = 0;
+  for (const float m : hit.model().mass) mass += static_cast<double>(m);
+  for (int t = 0; t < 20; ++t) {
+    hit.step();
+    told -= hit.colliders()[0].force[1] / kTickRate;
+  }
+  double momentum = 0;
+  for (std::size_t i = 0; i < hit.state().v.size(); ++i)
+    momentum += static_cast<double>(hit.state().v[i][1] * hit.model().mass[i]);
+  CHECK(momentum == Approx((1 + kRestitution) * mass * kSpeed).epsilon(0.01));
+  CHECK(told == Approx(momentum).epsilon(0.001));
+}
+
 TEST_CASE("what rests on an object does not bounce, whatever presses on it") {
   for (const Way way : kWays) {
     const std::vector<Layer> one = {{kThickness, 0}};
