@@ -9,6 +9,7 @@
 #include "core/error.h"
 #include "core/forces/air/air.h"
 #include "core/geometry/ray_cast.h"
+#include "core/solver/bending_kick.h"
 #include "core/solver/constants.h"
 #include "core/stop_signal.h"
 #include "core/world/constants.h"
@@ -338,7 +339,12 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
     result.work += contact_.guard->work();
     contact_.guard->end_tick();
   }
+  const bool lags = kind == SolverKind::relaxation && !solvers_.dashpots.empty();
+  if (lags) kick_by_bending(model_, dt / 2, solvers_.relaxation.force, state_);
   damp_bending(kind, result);
+  if (!lags) return result;
+  kick_by_bending(model_, -dt / 2, solvers_.relaxation.force, state_);
+  if (!result.blow_up) result.after.kinetic = kinetic_energy(model_, state_);
   return result;
 }
 
