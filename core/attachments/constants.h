@@ -118,6 +118,11 @@ inline constexpr double kJawFacingSlack = 1e-6;
 /// Larger: they lose touch of what they were pressed on. Smaller: they take longer to get free.
 inline constexpr double kJawRetreat = 0.02;
 
+/// Jaws that stand on a layer on another object press it if their goal lies so far behind it, as a
+/// part of the way there [1]. Larger: they glide along where they are meant to press. Smaller: jaws
+/// that are moved along a layer press it because of its small slopes.
+inline constexpr double kPressingSlope = 0.05;
+
 /// Jaws that one layer resists with more than their force yield to it until it resists with this
 /// fraction of that [1]. Larger: they change their minds. Smaller: they go on yielding to rims.
 inline constexpr double kJawLeaves = 0.3;

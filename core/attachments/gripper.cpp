@@ -20,27 +20,33 @@ Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
   return def.orientation * Vec3d(jaw == 0 ? -x : x, 0, 0);
 }
 
+/// Whether a way leads so steeply into the layer that a jaw pinches that it is meant to press.
+bool is_deep(const Vec3d& way, const ColliderState& jaw) {
+  const double into = way.dot(jaw.pinch.direction);
+  return into > kPressingDepth && into > kPressingSlope * way.norm();
+}
+
 /// A way of the middle without what goes into single layers that jaws pinch against other objects:
 /// they stand where these have their thickness. Jaws that do not grip press them besides, with the
 /// gripper's force in all, less what resists already; those that close with no more than they will
 /// grip with: they rub, and bunch cloth as they close.
 /// @param seconds  of the last tick, whose impulses the jaws still have
-/// @param step     wanted [m]
-Vec3d stand_on_layers(const Gripper& gripper, double seconds, Vec3d step,
+/// @param way      wanted [m]
+Vec3d stand_on_layers(const Gripper& gripper, double seconds, const Vec3d& way,
                       ColliderStates& colliders) {
   assert(seconds > 0);
-  const Vec3d wanted = step;
-  double standing = 0, resistance = 0;  // jaws; [N]
+  Vec3d left = way;
+  double pressing = 0, resistance = 0;  // jaws; [N]
   for (const std::size_t k : gripper.jaw) {
     ColliderState& jaw = colliders[k];
     const Vec3d& into = jaw.pinch.direction;
-    jaw.stands = jaw.pinches() && wanted.dot(into) > kPressingDepth;
+    jaw.stands = jaw.pinches() && way.dot(into) > -kPressingDepth;
     if (!jaw.stands) continue;
-    ++standing;
+    if (is_deep(way, jaw)) ++pressing;
     resistance += std::max(0.0, jaw.impulse.dot(into) / seconds);
     const double most = kYieldSpeed * seconds;
     const double back = std::clamp(jaw.pinch.lack / 2, -most, most);
-    step -= into * std::max(0.0, step.dot(into) + back);
+    left -= into * std::max(0.0, left.dot(into) + back);
   }
   const bool closes = gripper.wanted < gripper.opening;
   const double hold =
@@ -49,12 +55,12 @@ Vec3d stand_on_layers(const Gripper& gripper, double seconds, Vec3d step,
   for (const std::size_t k : gripper.jaw) {
     ColliderState& jaw = colliders[k];
     jaw.press = {};
-    if (jaw.stands && presses)
-      jaw.press = {jaw.pinch.direction, hold / standing, (hold - resistance) / standing,
+    if (jaw.stands && presses && is_deep(way, jaw))
+      jaw.press = {jaw.pinch.direction, hold / pressing, (hold - resistance) / pressing,
                    jaw.pinch.other};
     jaw.pinch = {.braces = jaw.pinch.braces};
   }
-  return step;
+  return left;
 }
 
 /// Pose of the gripper's middle after a tick, along a straight line and by the shortest turn.
