@@ -5,6 +5,7 @@
 #include "core/error.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
+#include "tests/support/weight.h"
 #include "tests/support/worlds.h"
 
 // A gripper holds as much as friction allows: twice its coefficient times the force.
@@ -13,13 +14,7 @@ using namespace weft;
 
 namespace {
 
-constexpr double kGravity = 9.81;
-
-double weight_of(const World<float>& world) {
-  double mass = 0;
-  for (const float m : world.model().mass) mass += static_cast<double>(m);
-  return mass * kGravity;
-}
+using test::kGravity, test::weight_of;
 
 /// A square cloth that hangs in the plane z = 0 by its upper strip, between open jaws.
 /// @param height        of the jaws [m]; the strip is at 1.2

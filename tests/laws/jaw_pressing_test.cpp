@@ -3,6 +3,7 @@
 #include "core/attachments/gripper_load.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
+#include "tests/support/weight.h"
 #include "tests/support/worlds.h"
 
 // Jaws that press cloth on other objects, that cloth resists, and what is told of their forces.
@@ -11,13 +12,7 @@ using namespace weft;
 
 namespace {
 
-constexpr double kGravity = 9.81;
-
-double weight_of(const World<float>& world) {
-  double mass = 0;
-  for (const float m : world.model().mass) mass += static_cast<double>(m);
-  return mass * kGravity;
-}
+using test::kGravity, test::weight_of;
 
 void send(World<float>& world, const Vec3d& position, double speed) {
   GripperCommand command;

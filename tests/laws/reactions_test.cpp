@@ -3,6 +3,7 @@
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
 #include "tests/support/sheets_of_triangles.h"
+#include "tests/support/weight.h"
 #include "tests/support/worlds.h"
 
 // What holds a cloth carries its weight.
@@ -11,13 +12,7 @@ using namespace weft;
 
 namespace {
 
-constexpr double kGravity = 9.81;
-
-double weight_of(const World<float>& world) {
-  double mass = 0;
-  for (const float m : world.model().mass) mass += static_cast<double>(m);
-  return mass * kGravity;
-}
+using test::kGravity, test::weight_of;
 
 /// A sheet of 12 x 14 particles in the plane y = `height`, with gravity and much damping.
 WorldDef sheet_at(double height) {

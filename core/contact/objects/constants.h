@@ -144,6 +144,10 @@ inline constexpr double kSqueezedLayers = 0.3;
 /// A particle carries a row if its weight is above this [1].
 inline constexpr double kCarries = 0.1;
 
+/// Jaws stand before a layer that they begin to pinch if they go into it faster than this [m/s].
+/// Larger: they go on into it for a tick. Smaller: they stand where they only go along it.
+inline constexpr double kIntoPinch = 2e-4;
+
 /// Objects on both sides of a layer slip past each other if they do so faster than this [m/s].
 inline constexpr double kSlips = 1e-6;
 

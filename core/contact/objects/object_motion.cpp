@@ -6,7 +6,6 @@
 #include <cassert>
 #include <utility>
 
-#include "core/contact/colliders/constants.h"
 #include "core/contact/objects/constants.h"
 #include "core/instantiate.h"
 
@@ -21,7 +20,7 @@ bool goes_into_pinch(const ColliderState& state) {
 /// The same of a jaw, by the motion of both: they close on what both have in front of them.
 bool goes_into_pinch(const ColliderState& jaw, const ColliderState& mate) {
   if (jaw.stands || !jaw.pinches()) return false;
-  return (jaw.twist.linear + mate.twist.linear).dot(jaw.pinch.direction) > kTurningSpeed;
+  return (jaw.twist.linear + mate.twist.linear).dot(jaw.pinch.direction) > kIntoPinch;
 }
 
 /// Whether both jaws of a gripper stand in the coming substep.

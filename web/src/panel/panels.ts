@@ -8,7 +8,7 @@ import { crossings_text, guarantee_text, reasons_text } from './guarantee.js';
 
 const TOAST_TIME = 4000; // [ms]
 const MOST_NAMES = 6;
-const SMALL = '(width <= 600px), (height <= 480px)'; // as in screens.css; who is not alone is only counted there
+const SMALL = '(width <= 600px), (height <= 480px)'; // as in screens.css; several people are only counted there
 const WIDE = '(width >= 1600px) and (height >= 720px)'; // where figures do not cover the cloth
 const RATE_WINDOW = 2; // window of the tick rate [s]
 
