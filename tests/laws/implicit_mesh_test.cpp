@@ -17,19 +17,23 @@ namespace {
 
 constexpr double kFree = 0.2, kHeld = 0.05, kWidth = 0.03, kCell = 0.005;  // [m]
 
+/// A level cloth of a mesh whose uv are metres.
+ClothDef cloth_of(const FlatMesh& flat) {
+  ClothMesh cut;
+  for (const auto& p : flat.points) {
+    cut.mesh.positions.emplace_back(p[0], 0, p[1]);
+    cut.uv.push_back({p[0], p[1]});
+  }
+  cut.mesh.triangles = flat.triangles;
+  ClothDef cloth = flat_cloth(2, 2);
+  cloth.mesh = cut;
+  return cloth;
+}
+
 /// A level strip that is held at its left end.
 WorldDef strip(bool mesh, double rigidity, double relaxation) {
-  ClothDef cloth = flat_cloth(7, 51, kFree + kHeld, kWidth);
-  if (mesh) {
-    ClothMesh cut;
-    const FlatMesh flat = cut_rectangle(Cut::alternating, kFree + kHeld, kWidth, kCell);
-    for (const auto& p : flat.points) {
-      cut.mesh.positions.emplace_back(p[0], 0, p[1]);
-      cut.uv.push_back({p[0], p[1]});
-    }
-    cut.mesh.triangles = flat.triangles;
-    cloth.mesh = cut;
-  }
+  ClothDef cloth = mesh ? cloth_of(cut_rectangle(Cut::alternating, kFree + kHeld, kWidth, kCell))
+                        : flat_cloth(7, 51, kFree + kHeld, kWidth);
   FabricDef& fabric = cloth.fabric;
   fabric.areal_density = 0.2;
   fabric.stretch_warp = fabric.stretch_weft = 3000;
@@ -105,15 +109,7 @@ TEST_CASE("with implicit bending damping makes a mesh decay by its law and what 
 }
 
 TEST_CASE("with implicit a level mesh falls through still air without gliding sideways") {
-  ClothDef cloth = flat_cloth(2, 2);
-  ClothMesh cut;
-  const FlatMesh flat = cut_rectangle(Cut::irregular, 0.3, 0.3, 0.03);
-  for (const auto& p : flat.points) {
-    cut.mesh.positions.emplace_back(p[0], 0, p[1]);
-    cut.uv.push_back({p[0], p[1]});
-  }
-  cut.mesh.triangles = flat.triangles;
-  cloth.mesh = cut;
+  ClothDef cloth = cloth_of(cut_rectangle(Cut::irregular, 0.3, 0.3, 0.03));
   FabricDef& fabric = cloth.fabric;
   fabric.areal_density = 0.1;
   fabric.stretch_warp = fabric.stretch_weft = 300;
