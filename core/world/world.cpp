@@ -6,6 +6,7 @@
 #include <cassert>
 #include <optional>
 
+#include "core/contact/colliders/collider_plan.h"
 #include "core/error.h"
 #include "core/forces/air/air.h"
 #include "core/geometry/ray_cast.h"

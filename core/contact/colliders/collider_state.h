@@ -107,12 +107,8 @@ Pose rest_pose(const ShapeDef& shape);
 /// All colliders as defined, or at time 0 of their keyframes.
 ColliderStates initial_states(const std::vector<ColliderDef>& colliders);
 
-/// Plans the coming tick: from the present poses towards those of keyframes or commands, within the
-/// speed limits.
-/// @param time     at the start of the tick [s]
-/// @param seconds  length of the tick
-void plan_motion(const std::vector<ColliderDef>& colliders, double time, double seconds,
-                 ColliderStates& states);
+/// Forgets what the cloth has been given in the tick.
+void clear_impulses(ColliderState& state);
 
 /// Returns to the start of the running tick.
 void take_back_motion(ColliderStates& states);
@@ -130,10 +126,5 @@ bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate);
 
 /// Moves a collider by part of the tick [s]; it ends exactly at its goal.
 void advance_collider(double seconds, double tick_seconds, ColliderState& state);
-
-/// Ends the tick: slows colliders whose resistance exceeds their force, and lets those that stand
-/// yield to it.
-void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
-                   ColliderStates& states);
 
 }  // namespace weft

@@ -3,7 +3,7 @@
 
 #include <catch2/catch.hpp>
 
-#include "core/contact/colliders/collider_state.h"
+#include "core/contact/colliders/collider_plan.h"
 #include "core/error.h"
 #include "core/math/sine.h"
 

@@ -2,6 +2,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/contact/colliders/collider_plan.h"
 #include "core/contact/guard/cloth_guard.h"
 #include "core/diagnostics/crossings.h"
 #include "core/error.h"
