@@ -118,6 +118,10 @@ inline constexpr double kJawFacingSlack = 1e-6;
 /// Larger: they lose touch of what they were pressed on. Smaller: they take longer to get free.
 inline constexpr double kJawRetreat = 0.02;
 
+/// Jaws press layers in one direction if those of both are alike: if the cosine between them is
+/// above this [1]. Larger: astride a rod they rock. Smaller: in a corner they slide along it.
+inline constexpr double kAlikePinches = 0.5;
+
 /// Jaws that stand on a layer on another object press it if their goal lies so far behind it, as a
 /// part of the way there [1]. Larger: they glide along where they are meant to press. Smaller: jaws
 /// that are moved along a layer press it because of its small slopes.

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "core/attachments/constants.h"
-#include "core/contact/colliders/constants.h"
+#include "core/contact/colliders/collider_plan.h"
 #include "core/error.h"
 
 namespace weft {
@@ -20,76 +20,58 @@ Vec3d offset_of_jaw(const GripperDef& def, std::size_t jaw, double opening) {
   return def.orientation * Vec3d(jaw == 0 ? -x : x, 0, 0);
 }
 
-/// Whether a way leads so steeply into the layer that a jaw pinches that it is meant to press.
-bool is_deep(const Vec3d& way, const ColliderState& jaw) {
-  const double into = way.dot(jaw.pinch.direction);
-  return into > kPressingDepth && into > kPressingSlope * way.norm();
+/// Whether a jaw and its gripper pinch layers in much the same direction.
+bool is_alike(const Pinch& jaw, const Pinch& middle) {
+  return jaw.other != kNone && jaw.direction.dot(middle.direction) > kAlikePinches;
 }
 
-/// A way of the middle without what goes into single layers that jaws pinch against other objects:
-/// they stand where these have their thickness. Jaws that do not grip press them besides, with the
-/// gripper's force in all, less what resists already; those that close with no more than they will
-/// grip with: they rub, and bunch cloth as they close.
-/// @param seconds  of the last tick, whose impulses the jaws still have
-/// @param way      wanted [m]
-Vec3d stand_on_layers(const Gripper& gripper, double seconds, const Vec3d& way,
-                      ColliderStates& colliders) {
-  assert(seconds > 0);
-  Vec3d left = way;
-  double pressing = 0, resistance = 0;  // jaws; [N]
-  for (const std::size_t k : gripper.jaw) {
-    ColliderState& jaw = colliders[k];
-    const Vec3d& into = jaw.pinch.direction;
-    jaw.stands = jaw.pinches() && way.dot(into) > -kPressingDepth;
-    if (!jaw.stands) continue;
-    if (is_deep(way, jaw)) ++pressing;
-    resistance += std::max(0.0, jaw.impulse.dot(into) / seconds);
-    const double most = kYieldSpeed * seconds;
-    const double back = std::clamp(jaw.pinch.lack / 2, -most, most);
-    left -= into * std::max(0.0, left.dot(into) + back);
+/// What a gripper pinches by its jaws: of both the mean, or what it is sent into more.
+Pinch joint_pinch(const Pinch& left, const Pinch& right, const Vec3d& wanted) {
+  if (left.other == kNone) return right;
+  if (right.other == kNone) return left;
+  if (!is_alike(left, right))
+    return wanted.dot(left.direction) < wanted.dot(right.direction) ? right : left;
+  return {(left.direction + right.direction).normalized(), std::max(left.lack, right.lack),
+          left.other, left.braces || right.braces};
+}
+
+/// What cloth has done to both jaws in the tick, as what it has done to their middle.
+void join_jaws(const ColliderStates& colliders, Gripper& gripper) {
+  ColliderState& middle = gripper.middle;
+  const ColliderState &left = colliders[gripper.jaw[0]], &right = colliders[gripper.jaw[1]];
+  clear_impulses(middle);
+  for (const ColliderState* jaw : {&left, &right}) {
+    const Vec3d lever = jaw->pose.position - gripper.pose.position;
+    middle.impulse += jaw->impulse;
+    middle.pushed += jaw->pushed;
+    middle.angular_impulse += jaw->angular_impulse + lever.cross(jaw->impulse);
   }
+  middle.blocked = left.blocked || right.blocked;
+  middle.pinch = joint_pinch(left.pinch, right.pinch, middle.wanted.linear);
+}
+
+/// Plans the tick of the middle. Jaws that cannot close because they stand, as where they have been
+/// sent into cloth on a table, draw back until they can, and stay there until they are sent
+/// elsewhere. Jaws that do not grip press layers in their way on other objects; those that close
+/// with no more than they will grip with: they rub, and bunch cloth as they close.
+void plan_middle(double seconds, double thickest, const ColliderStates& colliders,
+                 Gripper& gripper) {
+  ColliderState& middle = gripper.middle;
   const bool closes = gripper.wanted < gripper.opening;
-  const double hold =
-      closes ? std::min(gripper.force, gripper.def.max_force) : gripper.def.max_force;
-  const bool presses = !gripper.gripping && hold > resistance;
-  for (const std::size_t k : gripper.jaw) {
-    ColliderState& jaw = colliders[k];
-    jaw.press = {};
-    if (jaw.stands && presses && is_deep(way, jaw))
-      jaw.press = {jaw.pinch.direction, hold / pressing, (hold - resistance) / pressing,
-                   jaw.pinch.other};
-    jaw.pinch = {.braces = jaw.pinch.braces};
+  const bool stops = closes && !gripper.gripping && middle.blocked;
+  gripper.stays = closes && (gripper.stays || stops);
+  const double most = gripper.def.max_force;
+  const double hold = gripper.gripping ? 0 : closes ? std::min(gripper.force, most) : most;
+  Errand errand{gripper.target, gripper.speed, gripper.turn_speed, hold, kPressingSlope};
+  if (gripper.stays) {
+    const Vec3d ahead = gripper.target.position - gripper.pose.position;
+    const Vec3d back = ahead.normalized() * (stops ? kJawRetreat * thickest : 0);
+    errand.goal = {gripper.pose.position - back, gripper.pose.rotation};
   }
-  return left;
-}
-
-/// Pose of the gripper's middle after a tick, along a straight line and by the shortest turn.
-/// @param offset  to where it may go [m]
-Pose next_pose(const Gripper& gripper, const Vec3d& offset, double seconds) {
-  assert(seconds > 0 && gripper.speed > 0 && gripper.turn_speed > 0);
-  const Vec3d turn = rotation_vector(gripper.target.rotation * gripper.pose.rotation.conjugate());
-  double fraction = 1;
-  if (offset.norm() > gripper.speed * seconds) fraction = gripper.speed * seconds / offset.norm();
-  if (turn.norm() * fraction > gripper.turn_speed * seconds)
-    fraction = gripper.turn_speed * seconds / turn.norm();
-  const bool arrives = offset == gripper.target.position - gripper.pose.position;
-  if (fraction == 1 && arrives) return gripper.target;
-  return moved(gripper.pose, {offset * fraction, turn * fraction}, 1);
-}
-
-/// Pose of the middle at the end of the tick. Jaws that cannot close because they stand, as where
-/// they have been sent into cloth on a table, draw back until they can, and stay there until they
-/// are sent elsewhere.
-Pose next_middle(double seconds, double thickest, ColliderStates& colliders, Gripper& gripper) {
-  const bool closes = gripper.wanted < gripper.opening && !gripper.gripping;
-  const bool stands = colliders[gripper.jaw[0]].blocked || colliders[gripper.jaw[1]].blocked;
-  gripper.stays = gripper.wanted < gripper.opening && (gripper.stays || (closes && stands));
-  const Vec3d ahead = gripper.target.position - gripper.pose.position;
-  Vec3d back = Vec3d::Zero();
-  if (closes && stands) back = -ahead.normalized() * (kJawRetreat * thickest);
-  const Vec3d left = stand_on_layers(gripper, seconds, gripper.stays ? back : ahead, colliders);
-  if (!gripper.stays) return next_pose(gripper, left, seconds);
-  return {gripper.pose.position + left, gripper.pose.rotation};
+  middle.pose = gripper.pose;
+  middle.max_force = hold;
+  const ColliderPair own = {static_cast<Index>(gripper.jaw[0]), static_cast<Index>(gripper.jaw[1])};
+  plan_object(errand, own, seconds, colliders, middle);
 }
 
 /// Whether the jaws were stopped by more than the layer that both have in front of them: by
@@ -148,6 +130,38 @@ double next_opening(double resistance, bool layered, double seconds, double thic
   return std::max(std::min(least, gripper.opening), gripper.opening - step);
 }
 
+/// Jaws press layers on other objects with what their gripper does, in equal shares.
+/// @param pinch  of the gripper
+void press_layers(const Pinch& pinch, const Gripper& gripper, ColliderStates& colliders) {
+  const Press& press = gripper.middle.press;
+  int pressing = 0;
+  for (const std::size_t k : gripper.jaw) {
+    colliders[k].stands = is_alike(colliders[k].pinch, pinch);
+    if (colliders[k].stands) ++pressing;
+  }
+  for (const std::size_t k : gripper.jaw) {
+    ColliderState& jaw = colliders[k];
+    jaw.press = {};
+    if (press.acts() && jaw.stands)
+      jaw.press = {press.direction, press.hold / pressing, press.squeeze / pressing,
+                   jaw.pinch.other, pressing};
+  }
+}
+
+/// Plans the tick of a jaw, which goes with the middle.
+/// @param offset  from it, as defined, at the end of the tick [m]
+void plan_jaw(const Gripper& gripper, const Vec3d& offset, double seconds, ColliderState& jaw) {
+  const ColliderState& middle = gripper.middle;
+  const Vec3d lever = jaw.pose.position - middle.pose.position;
+  const Pose& goal = middle.goal;
+  plan_carried({goal.position + goal.rotation * offset, goal.rotation}, seconds, jaw);
+  // What resists the middle resists the jaws, wherever it stands or yields.
+  const Vec3d turn = middle.wanted.angular - middle.twist.angular;
+  jaw.wanted.linear += middle.wanted.linear - middle.twist.linear + turn.cross(lever);
+  jaw.wanted.angular += turn;
+  jaw.pace = middle.pace;
+}
+
 }  // namespace
 
 std::array<ColliderDef, 2> jaws_of(const GripperDef& def) {
@@ -174,6 +188,7 @@ std::vector<Gripper> initial_grippers(const std::vector<GripperDef>& defs, std::
     gripper.speed = def.speed;
     gripper.turn_speed = def.turn_speed;
     gripper.force = def.force;
+    gripper.middle.radius = offset_of_jaw(def, 0, def.opening).norm() + def.half_extents.norm();
     grippers.push_back(gripper);
   }
   return grippers;
@@ -238,19 +253,18 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
       gripper.wanted = step.opening;
     }
     if (gripper.wanted >= gripper.opening) gripper.gripping = false;
-    const Pose middle = next_middle(seconds, thickest, colliders, gripper);
+    const Pinch pinch = gripper.middle.pinch;
+    plan_middle(seconds, thickest, colliders, gripper);
     const double resistance = resistance_of(gripper, colliders, seconds);
     const bool was = colliders[gripper.jaw[0]].layered;
     const bool layered = grips_layers(gripper, resistance, was);
     const double opening = next_opening(resistance, layered, seconds, thickest, gripper);
+    press_layers(pinch, gripper, colliders);
     for (std::size_t k = 0; k < 2; ++k) {
       ColliderState& jaw = colliders[gripper.jaw[k]];
-      const Vec3d offset = middle.rotation * offset_of_jaw(gripper.def, k, opening);
-      jaw.move = MoveDef{
-          {middle.position + offset, middle.rotation}, kMostColliderSpeed, kMostColliderTurnSpeed};
-      jaw.pace = {};
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);
       jaw.layered = layered;
+      plan_jaw(gripper, offset_of_jaw(gripper.def, k, opening), seconds, jaw);
       if (jaw.press.acts()) continue;  // on another object
       const double hold = gripper.gripping ? gripper.force : 0;
       const double squeeze = hold - (jaw.layered ? std::min(resistance, hold) : 0);
@@ -276,6 +290,9 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
     if (std::abs(gripper.opening - gripper.wanted) < kArrivalDistance)
       gripper.opening = gripper.wanted;  // by rounding it would be closing for ever
     gripper.facing = std::min(left.facing, right.facing);
+    join_jaws(colliders, gripper);
+    if (!gripper.middle.wanted.is_zero())
+      gripper.middle.pace = next_paces(gripper.middle, gripper.def.max_force, seconds);
     if (gripper.wanted >= gripper.opening) continue;
     const double clearance = 2 * gripper.facing * (1 + kJawFacingSlack);
     const bool stopped = gripper.opening <= clearance || left.blocked || right.blocked ||

@@ -62,6 +62,10 @@ struct Gripper {
   bool stays = false;      ///< its middle does, so that the jaws can close
   bool commanded = false;  ///< follows commands instead of its steps
   bool gripping = false;   ///< the jaws are stopped by the cloth between them, and press it
+
+  /// Its middle as an object, which stands, presses and yields as any other: what its jaws meet is
+  /// what it meets.
+  ColliderState middle;
 };
 
 /// The colliders of a gripper in its initial state.
@@ -77,7 +81,7 @@ void validate(const GripperCommand& command, const std::string& path);
 
 void command_gripper(const GripperCommand& command, Gripper& gripper);
 
-/// Call before `plan_motion` of a tick: gives the jaws their targets and pressing forces.
+/// Call before `plan_motion` of a tick: plans the motion of the jaws, and their pressing forces.
 /// @param time      at the start of the tick [s]
 /// @param seconds   length of the tick
 /// @param thickest  thickness of the thickest cloth [m]

@@ -25,18 +25,13 @@ std::array<double, 9> numbers_of(const Pose& pose, double first, double second) 
   return {first, second, p[0], p[1], p[2], q.x(), q.y(), q.z(), q.w()};
 }
 
-/// A collider that never moved adds nothing.
-void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
-          const ColliderState& state) {
-  if (state.pose == rest_pose(def.shape) && !state.move && state.pace.is_full()) return;
-  const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace.along);
-  feed(hash, own.data(), own.size());
+/// What the plan of the next tick depends on: nothing for one that nothing resists.
+void feed_plan(XXH64_state_t& hash, const ColliderState& state) {
   if (state.pace.into != 1) {
     feed(hash, &state.pace.into, 1);
     feed(hash, state.pace.against.data(), 3);
     feed(hash, &state.pace.yielded, 1);
   }
-  if (state.overload > 0) feed(hash, &state.overload, 1);
   if (state.pinches()) {
     feed(hash, state.pinch.direction.data(), 3);
     feed(hash, &state.pinch.lack, 1);
@@ -44,6 +39,16 @@ void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
     feed(hash, &state.press.other, 1);
     feed(hash, &state.impulse, 1);  // which is left of its force
   }
+}
+
+/// A collider that never moved adds nothing.
+void feed(XXH64_state_t& hash, std::size_t number, const ColliderDef& def,
+          const ColliderState& state) {
+  if (state.pose == rest_pose(def.shape) && !state.move && state.pace.is_full()) return;
+  const auto own = numbers_of(state.pose, static_cast<double>(number), state.pace.along);
+  feed(hash, own.data(), own.size());
+  if (state.overload > 0) feed(hash, &state.overload, 1);
+  feed_plan(hash, state);
   if (state.is_jaw() && state.press.hold > 0)
     feed(hash, &state.impulse, 1);                      // to which the jaw may yield
   if (state.layered) feed(hash, &state.press.hold, 1);  // to tell it from one that is not
@@ -59,6 +64,8 @@ void feed(XXH64_state_t& hash, const Gripper& gripper) {
   feed(hash, target.data(), target.size());
   if (gripper.closing > 0) feed(hash, &gripper.closing, 1);
   if (gripper.stays) feed(hash, &gripper.speed, 1);  // once more, to tell it
+  if (gripper.middle.pace.along != 1) feed(hash, &gripper.middle.pace.along, 1);
+  feed_plan(hash, gripper.middle);
   const std::array<double, 4> rest = {gripper.force, gripper.facing, gripper.commanded ? 1.0 : 0.0,
                                       gripper.gripping ? 1.0 : 0.0};
   feed(hash, rest.data(), rest.size());

@@ -1,4 +1,4 @@
-// Plans the motion of colliders within their force limits.
+// Plans the motion of objects within their force limits.
 
 #include "core/contact/colliders/collider_plan.h"
 
@@ -19,21 +19,18 @@ double allowed_fraction(double displacement, double most) {
   return displacement > most ? most / displacement : 1;
 }
 
-struct Wish {
-  Pose goal;
-  double speed, turn_speed;  // limits
-};
-
-/// Target pose at the end of the tick.
-std::optional<Wish> wish_of(const ColliderDef& def, double time, const ColliderState& state) {
-  if (state.move) return Wish{state.move->target, state.move->speed, state.move->turn_speed};
+/// Where a collider is sent, for the end of the tick.
+std::optional<Errand> errand_of(const ColliderDef& def, double time, const ColliderState& state) {
+  const auto to = [&state](const Pose& goal, double speed, double turn_speed) {
+    return Errand{goal, speed, turn_speed, state.max_force, 0};
+  };
+  if (state.move) return to(state.move->target, state.move->speed, state.move->turn_speed);
   if (def.motion.keyframes.empty()) return std::nullopt;
   // Where it only turns, or only shifts, it comes back to that at the speeds of a command.
   const TopSpeeds top = top_speeds(def.motion);
   const MoveDef usual;
-  return Wish{keyframed_pose(def, time),
-              top.linear > 0 ? top.linear * kColliderCatchUp : usual.speed,
-              top.angular > 0 ? top.angular * kColliderCatchUp : usual.turn_speed};
+  return to(keyframed_pose(def, time), top.linear > 0 ? top.linear * kColliderCatchUp : usual.speed,
+            top.angular > 0 ? top.angular * kColliderCatchUp : usual.turn_speed);
 }
 
 /// The part of a displacement or velocity that goes into what resists.
@@ -64,75 +61,57 @@ double next_pace(const ColliderState& state, double pace, double resistance, dou
   return -std::min(1.0, std::min(resistance - 1, kMostYielding) * kYieldSpeed / speed);
 }
 
-/// Paces in the next tick, by the impulses of the last one.
-Pace next_paces(const ColliderState& state, double max_force, double seconds) {
-  Pace next = state.pace;
-  const double pushed = state.pushed.norm(), most = max_force * seconds;
-  if (pushed > 0) next.against = state.pushed / pushed;
-  const Vec3d into = part_into(state.wanted.linear, next);
-  next.into = 1;
-  if (!into.isZero(0) || pushed > most)  // it yields to more than its force wherever it goes
-    next.into = next_pace(state, state.pace.into, pushed / most, state.wanted.linear.norm(),
-                          next.yielded, seconds);
-  const Vec3d along = state.wanted.linear - into;
-  const double turn = state.wanted.angular.norm();
-  const double speed = along.norm() + (turn > 0 ? turn * state.radius : 0);
-  const double work = state.impulse.dot(along) + state.angular_impulse.dot(state.wanted.angular);
-  const double resistance = speed > 0 ? work / (speed * most) : 0;
-  next.along = next_pace(state, next.along, resistance, speed, 0, seconds);
-  if (pushed == 0 && next.into == 1) {
-    next.against.setZero();
-    next.yielded = 0;
-  }
-  return next;
+bool contains(const ColliderPair& own, Index collider) {
+  return collider != kNone && (collider == own[0] || collider == own[1]);
 }
 
 /// Of two objects that press a layer against each other the weaker one gives way slowly, and the
 /// stronger one follows.
-/// @param k     number of one of them
+/// @param own   colliders of one of them
 /// @param step  towards its goal, along the pinch [m]
 /// @param most  that either moves [m]
 /// @return how far it goes along its pinch [m]
-double advance_against(std::size_t k, double step, double most, const ColliderStates& states) {
-  const ColliderState& state = states[k];
-  assert(state.pinches() && most >= 0);
-  const ColliderState& other = states[at_index(state.pinch.other)];
-  const bool opposed = state.press.other == state.pinch.other;
-  if (!opposed || other.press.other != static_cast<Index>(k)) return 0;
-  if (state.max_force < other.max_force) return -most;
-  return state.max_force > other.max_force ? std::clamp(step, 0.0, most) : 0;
+double advance_against(const ColliderPair& own, double step, double most,
+                       const ColliderStates& states, const ColliderState& object) {
+  assert(object.pinches() && most >= 0);
+  const ColliderState& other = states[at_index(object.pinch.other)];
+  const bool opposed = object.press.other == object.pinch.other;
+  if (!opposed || !contains(own, other.press.other)) return 0;
+  if (object.max_force < other.max_force) return -most;
+  return object.max_force > other.max_force ? std::clamp(step, 0.0, most) : 0;
 }
 
 /// What is left of the step towards its goal of an object that pinches a layer against another one
 /// [m]: it goes no farther that way, but to where the layer has its thickness, and presses
 /// with its force as long as its goal lies there. It moves on along the layer. Where layers beside
 /// resist with its force it does not press besides.
-/// @param k        its number
-/// @param seconds  of the last tick, whose impulses the state still has
-Vec3d step_along_pinch(std::size_t k, const Vec3d& step, double seconds, ColliderStates& states) {
-  ColliderState& state = states[k];
-  assert(!state.is_jaw() && seconds > 0);
+Vec3d step_along_pinch(const Errand& errand, const ColliderPair& own, double seconds,
+                       const ColliderStates& states, ColliderState& object) {
+  assert(seconds > 0 && errand.press >= 0);
+  const Vec3d step = errand.goal.position - object.pose.position;
   const double most = kYieldSpeed * seconds;
-  if (!state.pinches()) {
+  if (!object.pinches()) {
     // What has let go for a moment is met again slowly.
-    const double ahead = state.forced ? 0 : std::max(step.dot(state.press.direction) - most, 0.0);
-    const Vec3d left = step - state.press.direction * ahead;
-    state.press = {};
+    const Vec3d& pressed = object.press.direction;
+    const double ahead = object.forced ? 0 : std::max(step.dot(pressed) - most, 0.0);
+    const Vec3d left = step - pressed * ahead;
+    object.press = {};
     return left;
   }
-  const Vec3d& pinch = state.pinch.direction;
+  // By the rounding of rows it would be another direction in each tick, and slip to and fro.
+  const Vec3d& before = object.press.direction;
+  const bool same = before.dot(object.pinch.direction) > 1 - kSameDirection;
+  const Vec3d pinch = same ? before : object.pinch.direction;
   const double into = step.dot(pinch);
-  const double resistance = std::max(0.0, state.impulse.dot(pinch) / seconds);
-  const bool stands = into > kPressingDepth && !state.forced;
-  const bool presses = stands && resistance < state.max_force;
-  const double advance = presses ? advance_against(k, into, most, states) : 0;
-  state.press = {};
-  if (presses)
-    state.press = {pinch, state.max_force, state.max_force - resistance, state.pinch.other};
-  const double back = std::clamp(state.pinch.lack / 2, -most, most);
-  const Vec3d left = stands ? Vec3d(step - pinch * (into - advance + std::max(back, -into))) : step;
-  state.pinch = {};
-  return left;
+  const double resistance = std::max(0.0, object.impulse.dot(pinch) / seconds);
+  const bool stands = into > -kPressingDepth && !object.forced;
+  const bool deep = into > kPressingDepth && into > errand.slope * step.norm();
+  const bool presses = stands && deep && resistance < errand.press;
+  const double advance = presses ? advance_against(own, into, most, states, object) : 0;
+  object.press = {};
+  if (presses) object.press = {pinch, errand.press, errand.press - resistance, object.pinch.other};
+  const double back = std::clamp(object.pinch.lack / 2, -most, most);
+  return stands ? Vec3d(step - pinch * (into - advance + std::max(back, -into))) : step;
 }
 
 /// What its pace leaves of a motion. What yields fast does nothing else.
@@ -147,6 +126,39 @@ Twist slowed(const Twist& motion, double seconds, Pace& pace) {
   return {left + (motion.linear - into) * along, motion.angular * along};
 }
 
+/// Begins the tick of an object: where it is, and nothing of the last one.
+void begin_tick(ColliderState& object) {
+  object.start = object.goal = object.pose;
+  object.start_overload = object.overload;
+  object.wanted = object.twist = {};
+  object.progress = 0;
+  object.blocked = false;
+  clear_impulses(object);
+}
+
+/// Sends an object on its way within its speeds and at its pace.
+/// @param left  of the step to its goal [m]
+void head_for(const Errand& errand, const Vec3d& left, double seconds, ColliderState& object) {
+  const Vec3d step = errand.goal.position - object.pose.position;
+  const Vec3d turn = rotation_vector(errand.goal.rotation * object.pose.rotation.conjugate());
+  // Translation and rotation of a command take the same time, so that the path does not depend on
+  // the tick.
+  const auto fraction_of = [&](const Vec3d& part) {
+    return std::min(allowed_fraction(part.norm(), errand.speed * seconds),
+                    allowed_fraction(turn.norm(), errand.turn_speed * seconds));
+  };
+  const double all = fraction_of(step);
+  object.wanted = {step * (all / seconds), turn * (all / seconds)};
+  if (object.wanted.is_zero() || object.forced) object.pace = {};
+  const Vec3d way = object.pace.yields() ? step : left;
+  const double fraction = fraction_of(way);
+  const bool arrives = fraction == 1 && object.pace.is_full();
+  object.twist =
+      slowed({way * (fraction / seconds), turn * (fraction / seconds)}, seconds, object.pace);
+  object.goal = arrives ? errand.goal : moved(object.pose, object.twist, seconds);
+  if (arrives && way != step) object.goal.position = object.pose.position + way;
+}
+
 }  // namespace
 
 void plan_motion(const std::vector<ColliderDef>& colliders, double time, double seconds,
@@ -155,38 +167,33 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
   assert(time >= 0 && seconds > 0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
-    assert(std::min(state.pace.into, state.pace.along) >= -1);
-    assert(std::max(state.pace.into, state.pace.along) <= 1);
-    state.start = state.goal = state.pose;
-    state.start_overload = state.overload;
-    state.wanted = state.twist = {};
-    state.progress = 0;
+    if (state.is_jaw()) continue;
     state.forced = state.move ? state.move->force : colliders[k].force;
-    state.bracing = std::exchange(state.pinch.braces, false);
-    const std::optional<Wish> wish = wish_of(colliders[k], time + seconds, state);
-    const Vec3d step = wish ? Vec3d(wish->goal.position - state.pose.position) : Vec3d::Zero();
-    Vec3d left = state.is_jaw() ? step : step_along_pinch(k, step, seconds, states);
-    clear_impulses(state);
-    state.blocked = !state.is_jaw() && state.press.acts();
-    if (!wish) continue;
-    const Vec3d turn = rotation_vector(wish->goal.rotation * state.pose.rotation.conjugate());
-    // Translation and rotation of a command take the same time, so that the path does not depend on
-    // the tick.
-    const auto fraction_of = [&](const Vec3d& part) {
-      return std::min(allowed_fraction(part.norm(), wish->speed * seconds),
-                      allowed_fraction(turn.norm(), wish->turn_speed * seconds));
-    };
-    const double all = fraction_of(step);
-    state.wanted = {step * (all / seconds), turn * (all / seconds)};
-    if (state.wanted.is_zero() || state.forced) state.pace = {};
-    if (state.pace.yields()) left = step;
-    const double fraction = fraction_of(left);
-    const bool arrives = fraction == 1 && state.pace.is_full();
-    state.twist =
-        slowed({left * (fraction / seconds), turn * (fraction / seconds)}, seconds, state.pace);
-    state.goal = arrives ? wish->goal : moved(state.pose, state.twist, seconds);
-    if (arrives && left != step) state.goal.position = state.pose.position + left;
+    const ColliderPair own = {static_cast<Index>(k), kNone};
+    plan_object(errand_of(colliders[k], time + seconds, state), own, seconds, states, state);
+    state.blocked = state.press.acts();
   }
+}
+
+void plan_object(const std::optional<Errand>& errand, const ColliderPair& own, double seconds,
+                 const ColliderStates& states, ColliderState& object) {
+  assert(std::min(object.pace.into, object.pace.along) >= -1);
+  assert(std::max(object.pace.into, object.pace.along) <= 1);
+  const Errand stay{object.pose, 0, 0, object.max_force, 0};
+  const Vec3d left = step_along_pinch(errand.value_or(stay), own, seconds, states, object);
+  object.bracing = object.pinch.braces;
+  object.pinch = {};
+  begin_tick(object);
+  if (errand) head_for(*errand, left, seconds, object);
+}
+
+void plan_carried(const Pose& goal, double seconds, ColliderState& object) {
+  begin_tick(object);
+  object.bracing = object.pinch.braces;
+  object.pinch = {};
+  object.pace = {};
+  const Vec3d step = goal.position - object.pose.position;
+  head_for({goal, kMostColliderSpeed, kMostColliderTurnSpeed, 0, 0}, step, seconds, object);
 }
 
 void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
@@ -196,9 +203,31 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
     state.force = -(state.impulse + state.besides) / seconds;
-    if (state.wanted.is_zero()) continue;
+    if (state.is_jaw() || state.wanted.is_zero()) continue;
     state.pace = next_paces(state, colliders[k].max_force, seconds);
   }
+}
+
+Pace next_paces(const ColliderState& object, double max_force, double seconds) {
+  Pace next = object.pace;
+  const double pushed = object.pushed.norm(), most = max_force * seconds;
+  if (pushed > 0) next.against = object.pushed / pushed;
+  const Vec3d into = part_into(object.wanted.linear, next);
+  next.into = 1;
+  if (!into.isZero(0) || pushed > most)  // it yields to more than its force wherever it goes
+    next.into = next_pace(object, object.pace.into, pushed / most, object.wanted.linear.norm(),
+                          next.yielded, seconds);
+  const Vec3d along = object.wanted.linear - into;
+  const double turn = object.wanted.angular.norm();
+  const double speed = along.norm() + (turn > 0 ? turn * object.radius : 0);
+  const double work = object.impulse.dot(along) + object.angular_impulse.dot(object.wanted.angular);
+  const double resistance = speed > 0 ? work / (speed * most) : 0;
+  next.along = next_pace(object, next.along, resistance, speed, 0, seconds);
+  if (pushed == 0 && next.into == 1) {
+    next.against.setZero();
+    next.yielded = 0;
+  }
+  return next;
 }
 
 }  // namespace weft

@@ -39,6 +39,11 @@ Resisted take_uncounted(ColliderState& state) {
   return given;
 }
 
+/// The part of an impulse from what slows an object, if it is meant to go there [N s].
+double resisted_push(const Vec3d& impulse, const Twist& wanted, const Pace& pace) {
+  return wanted.linear.dot(pace.against) > 0 ? impulse.dot(pace.against) : 0;
+}
+
 /// Compares what resists a motion with the force [N s].
 /// @return whether it has exceeded the force for longer than an impact lasts
 bool add_overload(double resisted, double seconds, ColliderState& state) {
@@ -118,9 +123,8 @@ bool count_resistance(double seconds, ColliderState& state) {
   const Resisted given = take_uncounted(state);
   if (state.wanted.is_zero()) return false;
   const double along = given.power(state.wanted) / surface_speed(state);
-  const bool presses = state.wanted.linear.dot(state.pace.against) > 0;
-  const double resisted = std::max(along, presses ? given.impulse.dot(state.pace.against) : 0);
-  return add_overload(resisted, seconds, state);
+  const double resisted = std::max(along, resisted_push(given.impulse, state.wanted, state.pace));
+  return add_overload(resisted, seconds, state) && !state.pace.yields();
 }
 
 bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate) {
@@ -130,11 +134,16 @@ bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate) {
   const Vec3d closing = axis * axis.dot(apart);
   const Twist wanted{jaw.wanted.linear - closing, jaw.wanted.angular};
   const Twist mates{mate.wanted.linear + closing, mate.wanted.angular};
-  const double speed = (wanted.linear + mates.linear).norm() / 2 + (apart - closing).norm() +
-                       wanted.angular.norm() * jaw.radius;
+  const Twist both{(wanted.linear + mates.linear) / 2, wanted.angular};
+  const double speed =
+      both.linear.norm() + (apart - closing).norm() + wanted.angular.norm() * jaw.radius;
   bool stands = false;
-  if (speed > 0)
-    stands = add_overload((given.power(wanted) + by_mate.power(mates)) / speed, seconds, jaw);
+  if (speed > 0) {
+    const double along = (given.power(wanted) + by_mate.power(mates)) / speed;
+    const Vec3d pushed = given.impulse + by_mate.impulse;
+    const double resisted = std::max(along, resisted_push(pushed, both, jaw.pace));
+    stands = add_overload(resisted, seconds, jaw) && !jaw.pace.yields();
+  }
   if (!closing.isZero(0)) {
     const double resisted = (given.impulse - by_mate.impulse).dot(closing.normalized()) / 2;
     stands |= add_overload(resisted, seconds, mate);

@@ -25,6 +25,7 @@ struct Press {
   double hold = 0;                  ///< force whose friction holds what it presses [N]
   double squeeze = 0;               ///< its part that the cloth does not resist yet [N]
   Index other = kNone;              ///< the object that it presses on; kNone: the other jaw
+  int parts = 1;                    ///< jaws of a gripper that press so, each with these forces
 
   bool acts() const { return !direction.isZero(0); }
 };
@@ -68,7 +69,7 @@ struct ColliderState {
   Press press;
   Vec3d besides = Vec3d::Zero();  ///< what counts in its force alone, so far in the tick [N s]
   bool layered = false;           ///< a jaw grips several layers, which resist it
-  bool stands = false;            ///< a jaw does, on a layer on another object
+  bool stands = false;            ///< on a layer that a jaw pinches, with its gripper
   double facing = 0;              ///< thickness of the cloth in front of a jaw; 0: none [m]
 
   // Its force limit within a substep: beyond it, the collider stands.
@@ -85,6 +86,8 @@ struct ColliderState {
   bool is_moving() const { return !twist.is_zero(); }
   bool pinches() const { return pinch.other != kNone; }
   bool is_jaw() const { return mate != kNone; }
+  /// Whether it is a jaw that presses cloth on the other one.
+  bool grips() const { return is_jaw() && press.other == kNone && press.hold > 0; }
   /// Whether it moves, or is meant to.
   bool is_active() const { return !wanted.is_zero() || press.hold > 0; }
 };
@@ -116,7 +119,7 @@ void take_back_motion(ColliderStates& states);
 /// Compares the resistance since the last call with the collider's force.
 /// @param seconds  since then
 /// @return whether it must stand: the resistance exceeds its force, for longer than an impact
-///         lasts
+///         lasts, and it does not yield to that already
 bool count_resistance(double seconds, ColliderState& state);
 
 /// The same for both jaws of a gripper, whose force is that of one: what resists their motion

@@ -74,6 +74,11 @@ inline constexpr double kImpactSeconds = 1e-3;
 /// An object presses a layer if its goal lies at least so far behind it [m].
 inline constexpr double kPressingDepth = 1e-6;
 
+/// An object goes on pressing in the direction in which it does while the cosine between that and
+/// the new one lacks no more than this of 1 [1]. Larger: along a curve it turns by jerks. Smaller,
+/// below rounding: it slips to and fro over the layer.
+inline constexpr double kSameDirection = 1e-5;
+
 /// Most that is remembered of an overload, in impulses of an impact [1]. Larger: a collider stays
 /// held for longer after a hard hit. At 1 or below nothing holds it.
 inline constexpr double kMostOverload = 4;

@@ -29,12 +29,6 @@ bool jaws_stand(double dt, ColliderState& jaw, ColliderState& mate) {
          goes_into_pinch(mate, jaw);
 }
 
-/// Whether an object stands that is not a jaw. What yields already goes on.
-bool object_stands(double dt, ColliderState& state) {
-  const bool overloaded = count_resistance(dt, state) && !state.pace.yields();
-  return overloaded || goes_into_pinch(state);
-}
-
 /// Objects that have been resisted by more than their force stand in the coming substep, and both
 /// jaws if one does; and what has begun to pinch a layer.
 template <class Real>
@@ -45,7 +39,7 @@ void stop_overloaded(double dt, ColliderStates& colliders, ObjectShapes<Real>& s
   for (std::size_t k = 0; k < shapes.frames.size(); ++k) {
     if (!shapes.frames[k].tracked) continue;
     if (!colliders[k].is_jaw()) {
-      if (object_stands(dt, colliders[k])) rest(k);
+      if (count_resistance(dt, colliders[k]) || goes_into_pinch(colliders[k])) rest(k);
       continue;
     }
     const std::size_t mate = at_index(colliders[k].mate);

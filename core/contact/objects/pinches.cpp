@@ -74,7 +74,7 @@ void list_touches(const ObjectRows<Real>& rows, const Vec3Array<Real>& x,
     if (!is_of_front(0) && !(row.count > 1 && is_of_front(1)) && !(row.count > 2 && is_of_front(2)))
       continue;
     const ColliderState& other = colliders[at_index(row.collider)];
-    if ((other.is_jaw() && other.press.hold > 0) || !is_near(row, x)) continue;
+    if (other.grips() || !is_near(row, x)) continue;
     for (std::size_t k = 0; k < row.count; ++k) {
       if (!is_of_front(k)) continue;
       Index& first = pinches.first_touch[at_index(row.particle[k])];

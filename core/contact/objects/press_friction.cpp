@@ -84,9 +84,11 @@ Press press_of(std::size_t k, const ColliderStates& colliders) {
   Press press = colliders[k].press;
   assert(colliders[k].pinches());
   const Press& other = colliders[at_index(colliders[k].pinch.other)].press;
-  if (other.other != static_cast<Index>(k)) return press;
-  press.hold = std::min(press.hold, other.hold);
-  press.squeeze = std::min(press.squeeze, other.squeeze);
+  const bool opposed = other.other == static_cast<Index>(k) || other.other == colliders[k].mate;
+  if (other.other == kNone || !opposed) return press;
+  const double parts = other.parts / static_cast<double>(press.parts);
+  press.hold = std::min(press.hold, other.hold * parts);
+  press.squeeze = std::min(press.squeeze, other.squeeze * parts);
   return press;
 }
 

@@ -33,7 +33,7 @@ Vec3<Real> push_way(const ObjectSolve<Real>& solve, const ContactRow<Real>& row)
   const MovingRow<Real>* const moving = solve.rows.moving_of(row);
   if (!moving) return row.normal;
   const ColliderState& object = (*solve.motion.colliders)[moving->collider];
-  if (!object.is_jaw() || object.press.other != kNone || object.press.hold == 0) return row.normal;
+  if (!object.grips()) return row.normal;
   const Vec3<Real> press = object.press.direction.template cast<Real>();
   const Real facing = row.normal.dot(press);
   return facing > Real(kFacing) ? Vec3<Real>(press / facing) : row.normal;
