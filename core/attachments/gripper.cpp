@@ -8,6 +8,7 @@
 
 #include "core/attachments/constants.h"
 #include "core/contact/colliders/collider_plan.h"
+#include "core/contact/colliders/constants.h"
 #include "core/error.h"
 
 namespace weft {
@@ -50,6 +51,26 @@ void join_jaws(const ColliderStates& colliders, Gripper& gripper) {
   middle.pinch = joint_pinch(left.pinch, right.pinch, middle.wanted.linear);
 }
 
+/// How far a gripper that stays yields in a tick to cloth that jams under it, as it does on its way
+/// to more than its force [m].
+Vec3d way_back(const ColliderState& middle, double max_force, double seconds) {
+  const double excess = middle.pushed.norm() / (max_force * seconds) - 1;
+  if (!(excess > 0)) return Vec3d::Zero();
+  return -middle.pushed.normalized() * (std::min(excess, kMostYielding) * kYieldSpeed * seconds);
+}
+
+/// Paces of the middle after the tick. Where what it carries has stopped it within the tick, it
+/// goes on at the mean speed of that: at full speed for a while and standing for a while it would
+/// give its load an impulse and take it back, and not get going.
+Pace paces_of(const Gripper& gripper, double seconds, const ColliderState& jaw) {
+  const Pace& before = gripper.middle.pace;
+  Pace next = next_paces(gripper.middle, gripper.def.max_force, seconds);
+  const double gone = jaw.progress / seconds;
+  if (jaw.overload > 0 && gone < 1 - kTickEndSlack && next.along > 0)
+    next.along = std::min(next.along, std::max(0.0, before.along) * gone);
+  return next;
+}
+
 /// Plans the tick of the middle. Jaws that cannot close because they stand, as where they have been
 /// sent into cloth on a table, draw back until they can, and stay there until they are sent
 /// elsewhere. Jaws that do not grip press layers in their way on other objects; those that close
@@ -65,8 +86,9 @@ void plan_middle(double seconds, double thickest, const ColliderStates& collider
   Errand errand{gripper.target, gripper.speed, gripper.turn_speed, hold, kPressingSlope};
   if (gripper.stays) {
     const Vec3d ahead = gripper.target.position - gripper.pose.position;
-    const Vec3d back = ahead.normalized() * (stops ? kJawRetreat * thickest : 0);
-    errand.goal = {gripper.pose.position - back, gripper.pose.rotation};
+    Vec3d back = way_back(middle, most, seconds);
+    if (stops) back -= ahead.normalized() * (kJawRetreat * thickest);
+    errand.goal = {gripper.pose.position + back, gripper.pose.rotation};
   }
   middle.pose = gripper.pose;
   middle.max_force = hold;
@@ -291,8 +313,7 @@ void finish_grippers(double seconds, const ColliderStates& colliders,
       gripper.opening = gripper.wanted;  // by rounding it would be closing for ever
     gripper.facing = std::min(left.facing, right.facing);
     join_jaws(colliders, gripper);
-    if (!gripper.middle.wanted.is_zero())
-      gripper.middle.pace = next_paces(gripper.middle, gripper.def.max_force, seconds);
+    if (!gripper.middle.wanted.is_zero()) gripper.middle.pace = paces_of(gripper, seconds, left);
     if (gripper.wanted >= gripper.opening) continue;
     const double clearance = 2 * gripper.facing * (1 + kJawFacingSlack);
     const bool stopped = gripper.opening <= clearance || left.blocked || right.blocked ||

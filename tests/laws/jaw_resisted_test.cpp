@@ -127,6 +127,28 @@ WorldDef sheet_between_jaws_and_box(double max_force, double of_box) {
   return def;
 }
 
+/// A sheet of 0.45 kg that hangs from jaws by its upper border.
+WorldDef heavy_sheet_in_jaws(double max_force, int rate) {
+  WorldDef def = test::empty_world(test::flat_cloth(15, 15, 0.3, 0.3));
+  ClothDef& sheet = def.cloths[0];
+  sheet.u = Vec3d::UnitZ();
+  sheet.v = -Vec3d::UnitY();
+  sheet.origin = Vec3d(0, 1, -0.15);
+  sheet.fabric.areal_density = 5;
+  sheet.fabric.stretch_warp = sheet.fabric.stretch_weft = 4000;
+  sheet.fabric.shear = 400;
+  def.environment.gravity = Vec3d(0, -kGravity, 0);
+  def.environment.damping = 1;
+  def.tick_rate = rate;
+  def.pins = {{EdgeStrip{Side::top, 0}, 0, {}}};
+  GripperDef gripper = jaws_at(Vec3d(0, 0.98, 0), max_force);
+  gripper.half_extents = Vec3d(0.01, 0.025, 0.16);
+  gripper.opening = 0.03;
+  gripper.force = 30;
+  def.grippers = {gripper};
+  return def;
+}
+
 }  // namespace
 
 TEST_CASE("jaws press layers on a table with max_force, to a fifth in the mean of three seconds") {
@@ -212,4 +234,41 @@ TEST_CASE(
   CHECK((force.mean - Vec3d(0, max_force, 0)).norm() < 0.25 * max_force);
   CHECK(force.most < 2 * max_force);
   CHECK(std::abs(world.grippers()[0].pose.position[0]) < 6e-3);
+}
+
+TEST_CASE("a gripper carries what its force suffices for, and goes down with what is heavier") {
+  const int rate = GENERATE(60, 240);
+  const auto [max_force, way] = GENERATE(table<double, double>({{6, 0.2}, {20, 0.2}, {0.2, -0.2}}));
+  CAPTURE(rate, max_force, way);
+  World<float> world(heavy_sheet_in_jaws(max_force, rate));  // its weight is 4.4 N
+  GripperCommand closed;
+  closed.opening = 0;
+  REQUIRE(world.command_gripper(0, closed));
+  test::advance(world, 1);
+  REQUIRE(world.grippers()[0].gripping);
+  while (!world.pins().list.empty()) world.unpin(world.pins().list.front().id);
+  test::advance(world, 3);
+  const double start = world.grippers()[0].pose.position[1];
+  send(world, 0, Vec3d(0, way > 0 ? 3 : -3, 0), 0.2);
+  test::advance(world, 3);
+  const double gone = world.grippers()[0].pose.position[1] - start;
+  CHECK(gone / (3 * way) > 0.8);
+  CHECK(gone / (3 * way) < 1.001);
+}
+
+TEST_CASE("jaws that close on layers on a table do not jam them with many times their force") {
+  const auto [thickness, max_force, goal] =
+      GENERATE(table<double, double, double>({{5e-4, 2, 0.02}, {1e-3, 10, -0.03}}));
+  CAPTURE(thickness, max_force, goal);
+  WorldDef def = layers_under_jaws(2, thickness, max_force);
+  def.grippers[0].opening = 0.1;
+  World<float> world(def);
+  send(world, 0, Vec3d(0, goal, 0), 0.3);
+  test::advance(world, 0.7);
+  GripperCommand closed;
+  closed.opening = 0;
+  REQUIRE(world.command_gripper(0, closed));
+  test::advance(world, 1);
+  for (int second = 0; second < 4; ++second)
+    CHECK(force_on(world, 0, 1).mean.norm() < 3 * std::max(max_force, def.grippers[0].force));
 }

@@ -45,10 +45,11 @@ double resisted_push(const Vec3d& impulse, const Twist& wanted, const Pace& pace
 }
 
 /// Compares what resists a motion with the force [N s].
+/// @param impact  what takes no longer is one [s]
 /// @return whether it has exceeded the force for longer than an impact lasts
-bool add_overload(double resisted, double seconds, ColliderState& state) {
+bool add_overload(double resisted, double seconds, double impact, ColliderState& state) {
   assert(seconds > 0 && state.max_force > 0);
-  const double most = state.max_force * kImpactSeconds;
+  const double most = state.max_force * impact;
   state.overload =
       std::clamp(state.overload + resisted - state.max_force * seconds, 0.0, most * kMostOverload);
   return state.overload > most;
@@ -124,7 +125,7 @@ bool count_resistance(double seconds, ColliderState& state) {
   if (state.wanted.is_zero()) return false;
   const double along = given.power(state.wanted) / surface_speed(state);
   const double resisted = std::max(along, resisted_push(given.impulse, state.wanted, state.pace));
-  return add_overload(resisted, seconds, state) && !state.pace.yields();
+  return add_overload(resisted, seconds, kImpactSeconds, state) && !state.pace.yields();
 }
 
 bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate) {
@@ -142,11 +143,12 @@ bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate) {
     const double along = (given.power(wanted) + by_mate.power(mates)) / speed;
     const Vec3d pushed = given.impulse + by_mate.impulse;
     const double resisted = std::max(along, resisted_push(pushed, both, jaw.pace));
-    stands = add_overload(resisted, seconds, jaw) && !jaw.pace.yields();
+    const double impact = jaw.grips() ? kGripImpactSeconds : kImpactSeconds;
+    stands = add_overload(resisted, seconds, impact, jaw) && !jaw.pace.yields();
   }
   if (!closing.isZero(0)) {
     const double resisted = (given.impulse - by_mate.impulse).dot(closing.normalized()) / 2;
-    stands |= add_overload(resisted, seconds, mate);
+    stands |= add_overload(resisted, seconds, kImpactSeconds, mate);
   }
   return stands;
 }

@@ -71,6 +71,11 @@ inline constexpr double kPaceGrowth = 1.15;
 /// touches hold it.
 inline constexpr double kImpactSeconds = 1e-3;
 
+/// The same of a gripper that holds cloth, whose inertia it meets at the start of each tick that is
+/// faster than the last [s]. Larger: it drives what it holds deeper into what it meets. Smaller: it
+/// stands before what it could carry.
+inline constexpr double kGripImpactSeconds = 6e-3;
+
 /// An object presses a layer if its goal lies at least so far behind it [m].
 inline constexpr double kPressingDepth = 1e-6;
 
