@@ -118,6 +118,10 @@ inline constexpr double kJawFacingSlack = 1e-6;
 /// Larger: they lose touch of what they were pressed on. Smaller: they take longer to get free.
 inline constexpr double kJawRetreat = 0.02;
 
+/// How far jaws draw back from cloth that they hold and that jams under them, in thicknesses of the
+/// thickest cloth [1]. Larger: they tremble before it. Smaller: it stays jammed.
+inline constexpr double kJamRetreat = 0.1;
+
 /// Jaws press layers in one direction if those of both are alike: if the cosine between them is
 /// above this [1]. Larger: astride a rod they rock. Smaller: in a corner they slide along it.
 inline constexpr double kAlikePinches = 0.5;

@@ -51,12 +51,33 @@ void join_jaws(const ColliderStates& colliders, Gripper& gripper) {
   middle.pinch = joint_pinch(left.pinch, right.pinch, middle.wanted.linear);
 }
 
+/// Whether what jaws hold has jammed under them, so that it cannot yield and stops them with less
+/// than their force.
+bool is_jammed(const Gripper& gripper, const ColliderState& jaw) {
+  const ColliderState& middle = gripper.middle;
+  const double moved = (gripper.pose.position - middle.start.position).norm();
+  return gripper.gripping && middle.blocked && jaw.overload == 0 && moved < kArrivalDistance;
+}
+
 /// How far a gripper that stays yields in a tick to cloth that jams under it, as it does on its way
 /// to more than its force [m].
-Vec3d way_back(const ColliderState& middle, double max_force, double seconds) {
+Vec3d yielding(const ColliderState& middle, double max_force, double seconds) {
   const double excess = middle.pushed.norm() / (max_force * seconds) - 1;
   if (!(excess > 0)) return Vec3d::Zero();
   return -middle.pushed.normalized() * (std::min(excess, kMostYielding) * kYieldSpeed * seconds);
+}
+
+/// How far a gripper goes back in a tick, wherever it was sent [m]: to yield where it stays, and to
+/// get free of what stops it.
+/// @param stops  its jaws cannot close because they stand
+Vec3d way_back(const Gripper& gripper, const ColliderState& jaw, bool stops, double thickest,
+               double seconds) {
+  const Vec3d ahead = (gripper.target.position - gripper.pose.position).normalized();
+  Vec3d back = Vec3d::Zero();
+  if (gripper.stays) back += yielding(gripper.middle, gripper.def.max_force, seconds);
+  if (stops) back -= ahead * (kJawRetreat * thickest);
+  if (is_jammed(gripper, jaw)) back -= ahead * (kJamRetreat * thickest);
+  return back;
 }
 
 /// Paces of the middle after the tick. Where what it carries has stopped it within the tick, it
@@ -73,8 +94,9 @@ Pace paces_of(const Gripper& gripper, double seconds, const ColliderState& jaw) 
 
 /// Plans the tick of the middle. Jaws that cannot close because they stand, as where they have been
 /// sent into cloth on a table, draw back until they can, and stay there until they are sent
-/// elsewhere. Jaws that do not grip press layers in their way on other objects; those that close
-/// with no more than they will grip with: they rub, and bunch cloth as they close.
+/// elsewhere. From what jams under them they draw back for a tick. Jaws that do not grip press
+/// layers in their way on other objects; those that close with no more than they will grip with:
+/// they rub, and bunch cloth as they close.
 void plan_middle(double seconds, double thickest, const ColliderStates& colliders,
                  Gripper& gripper) {
   ColliderState& middle = gripper.middle;
@@ -84,12 +106,9 @@ void plan_middle(double seconds, double thickest, const ColliderStates& collider
   const double most = gripper.def.max_force;
   const double hold = gripper.gripping ? 0 : closes ? std::min(gripper.force, most) : most;
   Errand errand{gripper.target, gripper.speed, gripper.turn_speed, hold, kPressingSlope};
-  if (gripper.stays) {
-    const Vec3d ahead = gripper.target.position - gripper.pose.position;
-    Vec3d back = way_back(middle, most, seconds);
-    if (stops) back -= ahead.normalized() * (kJawRetreat * thickest);
+  const Vec3d back = way_back(gripper, colliders[gripper.jaw[0]], stops, thickest, seconds);
+  if (gripper.stays || !back.isZero(0))
     errand.goal = {gripper.pose.position + back, gripper.pose.rotation};
-  }
   middle.pose = gripper.pose;
   middle.max_force = hold;
   const ColliderPair own = {static_cast<Index>(gripper.jaw[0]), static_cast<Index>(gripper.jaw[1])};

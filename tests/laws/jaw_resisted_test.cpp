@@ -4,6 +4,7 @@
 #include <catch2/catch.hpp>
 
 #include "core/attachments/gripper_load.h"
+#include "core/cloth/fabric_presets.h"
 #include "core/world/world.h"
 #include "tests/support/cloths.h"
 #include "tests/support/weight.h"
@@ -271,4 +272,33 @@ TEST_CASE("jaws that close on layers on a table do not jam them with many times 
   test::advance(world, 1);
   for (int second = 0; second < 4; ++second)
     CHECK(force_on(world, 0, 1).mean.norm() < 3 * std::max(max_force, def.grippers[0].force));
+}
+
+TEST_CASE("jaws come down with a fold that they hold until it resists with their force") {
+  WorldDef def = layers_under_jaws(1, 2e-3, 10);
+  FabricDef& fabric = def.cloths[0].fabric;
+  fabric = make_fabric("cotton");
+  fabric.thickness = 2e-3;
+  fabric.friction = 0.6;
+  def.cloths[0].origin[1] = 2.5e-3;
+  def.environment.air_density = EnvironmentDef{}.air_density;
+  World<float> world(def);
+  const auto close_to = [&world](double opening) {
+    GripperCommand command;
+    command.opening = opening;
+    REQUIRE(world.command_gripper(0, command));
+  };
+  test::advance(world, 0.5);
+  send(world, 0, Vec3d(0, 0.021, 0), 0.1);
+  test::advance(world, 1);
+  close_to(0);
+  test::advance(world, 1);
+  REQUIRE(world.grippers()[0].gripping);
+  send(world, 0, Vec3d(0, 0.2, 0), 0.2);
+  test::advance(world, 2.5);
+  send(world, 0, Vec3d(0, -0.05, 0), 0.1);
+  test::advance(world, 3);
+  const Force force = force_on(world, 0, 2);
+  CHECK(force.mean[1] > 5);
+  CHECK(force.mean[1] < 20);
 }
