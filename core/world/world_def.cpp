@@ -46,6 +46,24 @@ std::string hint_for(const std::string& key, const std::vector<std::string>& key
   return meant.empty() ? "" : "did you mean " + meant + "?";
 }
 
+/// Whether a field of a cloth, e.g. "rows", tells a rectangle, which a mesh has not. A mesh takes
+/// the stiffness that it must have, 0.
+bool is_of_rectangle(const ClothDef& cloth, std::string_view field) {
+  bool found = false;
+  visit_fields_of_grid(
+      cloth, [&](const FieldInfo& info, const auto&) { found = found || field == info.name; });
+  return found && field != "skip_stiffness";
+}
+
+/// The same of a field of a world, if its cloth is a mesh.
+bool is_without_effect(const WorldDef& def, const std::string& path, const FieldInfo& info) {
+  for (std::size_t k = 0; k < def.cloths.size(); ++k) {
+    if (def.cloths[k].mesh && path == cloth_field(k, "cloth."))
+      return is_of_rectangle(def.cloths[k], info.name);
+  }
+  return false;
+}
+
 DefinitionError unknown_key(const WorldDef& def, const std::string& key) {
   std::vector<std::string> keys = {"fabric"};
   for (const FieldListing& field : list_fields(def)) keys.push_back(field.key);
@@ -251,6 +269,10 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
   visit_fields(def, [&](const std::string& path, const FieldInfo& info, auto& value) {
     if (found || wanted != path + info.name) return;
     found = true;
+    if (is_without_effect(def, path, info))
+      throw DefinitionError(key, text, "none on a mesh",
+                            "mesh.source, mesh.scale, mesh.position and mesh.orientation in the "
+                            "scene's own text shape and place it");
     const std::string as_given = key.substr(0, key.size() - std::string_view(info.name).size());
     parse_field(as_given, info, text, value);
   });
@@ -263,7 +285,8 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
 
 std::vector<FieldListing> list_fields(const WorldDef& def) {
   std::vector<FieldListing> list;
-  visit_fields(def, [&list](const std::string& path, const FieldInfo& info, const auto& value) {
+  visit_fields(def, [&](const std::string& path, const FieldInfo& info, const auto& value) {
+    if (is_without_effect(def, path, info)) return;
     const bool flag = std::is_same_v<std::decay_t<decltype(value)>, bool>;
     list.push_back({path + info.name, text_of(info, value),
                     flag ? "true or false" : allowed_values(info), info.meaning});

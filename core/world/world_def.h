@@ -139,7 +139,7 @@ void validate(const WorldDef& def);
 /// several cloths, "cloths[1].rows" = "30". "cloth." and "fabric." refer to the first. "fabric" =
 /// "cotton" (or "cloths[1].fabric") takes all values of a preset. "model" = "seed" selects the
 /// seed's contact of particles with triangles if contact.self is the guard. Throws DefinitionError,
-/// without any change, on an unknown key or a value out of range.
+/// without any change, on an unknown key, a mesh's rectangle or a value out of range.
 void set_field(WorldDef& def, const std::string& key, const std::string& text);
 
 /// A field in text form.

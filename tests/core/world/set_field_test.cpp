@@ -1,0 +1,66 @@
+// What --set takes and refuses.
+
+#include <algorithm>
+#include <set>
+
+#include <catch2/catch.hpp>
+
+#include "core/error.h"
+#include "core/world/world_def.h"
+#include "tests/support/meshes.h"
+
+namespace weft {
+namespace {
+
+/// A grid and a mesh.
+WorldDef grid_and_mesh() {
+  WorldDef def;
+  def.cloths.resize(2);
+  def.cloths[1].name = "mesh";
+  def.cloths[1].mesh.emplace();
+  def.cloths[1].mesh->mesh = test::sheet(0.5);
+  return def;
+}
+
+DefinitionError refusal_of(WorldDef def, const std::string& key, const std::string& text) {
+  try {
+    set_field(def, key, text);
+  } catch (const DefinitionError& error) {
+    return error;
+  }
+  return {"none", "", ""};
+}
+
+/// Names of the fields listed of a cloth.
+std::set<std::string> fields_below(const std::string& path, const WorldDef& def) {
+  std::set<std::string> names;
+  for (const FieldListing& field : list_fields(def))
+    if (field.key.starts_with(path)) names.insert(field.key.substr(path.size()));
+  return names;
+}
+
+}  // namespace
+
+TEST_CASE("what tells a rectangle is refused on a mesh by name, all else is listed and taken") {
+  const WorldDef def = grid_and_mesh();
+  const std::set<std::string> of_rectangle = {"rows",   "columns", "width", "height",
+                                              "origin", "u",       "v",     "outline"};
+  for (const FieldListing& field : list_fields(def)) {
+    const DefinitionError as_it_is = refusal_of(def, field.key, field.value);
+    CHECK(as_it_is.field == "none");  // grids take all, and meshes what is listed of them
+    if (!field.key.starts_with("cloth.")) continue;
+    const std::string name = field.key.substr(6), key = "cloths[1]." + name;
+    const DefinitionError refused = refusal_of(def, key, field.value);
+    INFO(key << ": " << refused.what());
+    CHECK(fields_below("cloths[1].", def).contains(name) == !of_rectangle.contains(name));
+    CHECK((refused.field != "none") == of_rectangle.contains(name));
+    if (!of_rectangle.contains(name)) continue;
+    CHECK(refused.field == key);
+    CHECK(refused.value == field.value);
+    CHECK(refused.limit == "none on a mesh");
+    CHECK(refused.hint.find("mesh.position") != std::string::npos);
+  }
+  CHECK(fields_below("cloths[1].fabric.", def) == fields_below("fabric.", def));
+}
+
+}  // namespace weft
