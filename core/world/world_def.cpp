@@ -38,12 +38,35 @@ std::string text_of(const FieldInfo& info, const Value& value) {
 
 /// A hint for a key that is none.
 std::string hint_for(const std::string& key, const std::vector<std::string>& keys) {
-  for (const char* list : {"colliders", "pins", "grippers", "hands", "fans", "winds"})
-    if (key.starts_with(list)) return std::string(list) + " are set in the scene's own text alone";
   const auto without_group = std::find_if(
       keys.begin(), keys.end(), [&key](const std::string& k) { return k.ends_with("." + key); });
   const std::string meant = without_group != keys.end() ? *without_group : nearest_word(key, keys);
   return meant.empty() ? "" : "did you mean " + meant + "?";
+}
+
+/// Throws DefinitionError if a key names a list without keys, or a cloth that is not there: a list
+/// of all the keys that there are would hide the reason.
+void refuse_place(const WorldDef& def, const std::string& key) {
+  for (const char* list :
+       {"colliders", "pins", "grippers", "hands", "insults", "winds", "fans", "environment.fans"}) {
+    if (key.starts_with(list))
+      throw DefinitionError("key", key, std::string("none of ") + list,
+                            std::string(list) + " are set in the scene's own text alone");
+  }
+  if (key.find("mesh.") != std::string::npos)
+    throw DefinitionError("key", key, "none of a mesh",
+                          "it is shaped and placed in the scene's own text alone");
+  if (!key.starts_with("cloths")) return;
+  const std::string count = std::to_string(def.cloths.size());
+  std::string all;
+  for (std::size_t k = 0; k < def.cloths.size(); ++k) {
+    const std::string place = "cloths[" + std::to_string(k) + "]";
+    if (key == place || key.starts_with(place + ".")) return;
+    if (k == 0) all = place;
+    if (k > 0 && k + 1 == def.cloths.size()) all += " to " + place;
+  }
+  throw DefinitionError("key", key, all,
+                        "the scene has " + count + (def.cloths.size() == 1 ? " cloth" : " cloths"));
 }
 
 /// Whether a field of a cloth, e.g. "rows", tells a rectangle, which a mesh has not. A mesh takes
@@ -64,12 +87,14 @@ bool is_without_effect(const WorldDef& def, const std::string& path, const Field
   return false;
 }
 
-DefinitionError unknown_key(const WorldDef& def, const std::string& key) {
+/// @param wanted  the same key, of the first cloth as it is listed
+void refuse_key(const WorldDef& def, const std::string& key, const std::string& wanted) {
+  refuse_place(def, key);
   std::vector<std::string> keys = {"fabric"};
   for (const FieldListing& field : list_fields(def)) keys.push_back(field.key);
   std::string all;
   for (const std::string& known : keys) all += (all.empty() ? "" : ", ") + known;
-  return {"key", key, "one of " + all, hint_for(key, keys)};
+  throw DefinitionError("key", key, "one of " + all, hint_for(wanted, keys));
 }
 
 }  // namespace
@@ -276,7 +301,7 @@ void set_field(WorldDef& def, const std::string& key, const std::string& text) {
     const std::string as_given = key.substr(0, key.size() - std::string_view(info.name).size());
     parse_field(as_given, info, text, value);
   });
-  if (!found) throw unknown_key(def, key);
+  if (!found) refuse_key(def, key, wanted);
   // The guard belongs to Weft's contact: the seed's own self-contact replaces it.
   if (wanted == "model" && contact_of(def) == ContactModel::seed &&
       def.contact.seed.self == SelfContact::guard)

@@ -63,4 +63,30 @@ TEST_CASE("what tells a rectangle is refused on a mesh by name, all else is list
   CHECK(fields_below("cloths[1].fabric.", def) == fields_below("fabric.", def));
 }
 
+TEST_CASE("a key of a cloth that is not there is told how many there are, and no other key") {
+  WorldDef def = grid_and_mesh();
+  for (const std::string place : {"cloths[2].", "cloths[02].", "cloths[x].", "cloths."}) {
+    const DefinitionError refused = refusal_of(def, place + "fabric.thickness", "0.001");
+    CHECK(refused.value == place + "fabric.thickness");
+    CHECK(refused.limit == "cloths[0] to cloths[1]");
+    CHECK(refused.hint == "the scene has 2 cloths");
+  }
+  def.cloths.pop_back();
+  const DefinitionError alone = refusal_of(def, "cloths[1].rows", "9");
+  CHECK(alone.limit == "cloths[0]");
+  CHECK(alone.hint == "the scene has 1 cloth");
+  CHECK(refusal_of(def, "cloths[0].rws", "9").hint == "did you mean cloth.rows?");
+}
+
+TEST_CASE("a key of a list that has none is told where it is set, and no other key") {
+  for (const std::string list :
+       {"colliders", "pins", "grippers", "hands", "insults", "winds", "environment.fans"}) {
+    const DefinitionError refused = refusal_of(grid_and_mesh(), list + "[0].speed", "1");
+    CHECK(refused.limit == "none of " + list);
+    CHECK(refused.hint == list + " are set in the scene's own text alone");
+  }
+  CHECK(refusal_of(grid_and_mesh(), "cloths[1].mesh.position", "0,1,0").hint ==
+        "it is shaped and placed in the scene's own text alone");
+}
+
 }  // namespace weft
