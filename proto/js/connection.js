@@ -77,7 +77,7 @@ export class Connection extends Emitter {
     };
     socket.onclose = (/** @type {{code: number, reason: string}} */ { code, reason }) =>
       this.#lost(code, reason);
-    socket.onerror = () => {}; // the close event that follows has the code
+    socket.onerror = () => this.#failed();
     this.#socket = socket;
     this.#timer = this.#timers.setTimeout(() => this.#lookAgain(), OPENING_LIMIT);
   }
@@ -85,6 +85,13 @@ export class Connection extends Emitter {
   /** The time is up; but if this thread was busy, the socket may be open and its event be waiting. */
   #lookAgain() {
     this.#timer = this.#timers.setTimeout(() => this.drop(4002, 'no handshake'), SECOND_LOOK);
+  }
+
+  /** A close event that has the code follows, but in Node 20 none does where the handshake failed. */
+  #failed() {
+    if (this.phase !== 'connecting') return;
+    this.#clearTimer();
+    this.#timer = this.#timers.setTimeout(() => this.#lost(1006, 'no connection'), SECOND_LOOK);
   }
 
   /** Call when the server has proved healthy; the next loss is then retried soon. */
@@ -130,7 +137,9 @@ export class Connection extends Emitter {
   #detach() {
     const socket = this.#socket;
     this.#socket = null;
-    if (socket) socket.onopen = socket.onmessage = socket.onclose = null;
+    if (!socket) return null;
+    socket.onopen = socket.onmessage = socket.onclose = null;
+    socket.onerror = () => {}; // Node's package ws throws what has no listener
     return socket;
   }
 

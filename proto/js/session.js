@@ -113,7 +113,7 @@ export class Session extends Emitter {
 
   /**
    * Resolves with the first `welcome`. Rejects with `CallTimeout` if none comes in time, as where there is no such
-   * room; the client then goes on trying until it is closed, unless `reconnect` is false.
+   * room, and goes on trying until it is closed; without `reconnect` it rejects with `ConnectionLost` at once.
    * @param {Call} [call]
    * @returns {Promise<import('./messages.js').Welcome>}
    */

@@ -613,6 +613,41 @@ test('connect is given up in time where there is no such room or no server, and 
   client.close();
 });
 
+test('connect that is not to try again fails at once, also where no close event follows the error', async () => {
+  for (const fail of [(socket) => socket.lose(1006), (socket) => socket.onerror({})]) {
+    const { FakeSocket, sockets } = fakeSockets();
+    const timers = new FakeTimers();
+    const client = new WeftClient('ws://host:1/ws/nope', { WebSocket: FakeSocket, timers, reconnect: false });
+    const refused = assert.rejects(client.connect(), ConnectionLost);
+    fail(sockets[0]);
+    await timers.pass(100);
+    await refused;
+    await timers.pass(100000);
+    assert.equal(sockets.length, 1);
+  }
+});
+
+test('an error before the handshake is tried again soon, one of a socket that was left counts for nothing', async () => {
+  const { FakeSocket, sockets } = fakeSockets();
+  const timers = new FakeTimers();
+  const client = new WeftClient('ws://host:1/ws', { WebSocket: FakeSocket, timers });
+  const connected = client.connect();
+  sockets[0].onerror({});
+  sockets[0].onerror({});
+  await timers.pass(500);
+  assert.equal(sockets.length, 2);
+  sockets[0].onerror({});
+  await timers.pass(500);
+  assert.equal(sockets.length, 2);
+  sockets[1].open();
+  sockets[1].say(welcome);
+  sockets[1].onerror({});
+  await timers.pass(500);
+  await connected;
+  assert.equal(client.connected, true);
+  client.close();
+});
+
 test('a number that is not finite is refused by its name, whatever sends it, and nothing is sent', async () => {
   const { client, socket } = await join();
   const sent = socket.sent.length;
