@@ -49,7 +49,8 @@ void validate(const ClothDef& def) {
     throw DefinitionError("fabric.poisson", number_text(def.fabric.poisson),
                           "none, which is -1, without triangles",
                           "only triangles of a mesh have a Poisson's ratio of their own; springs "
-                          "couple the threads as they resist shear");
+                          "couple the threads as they resist shear")
+        .with(Range{kPoissonOfGrid, kPoissonOfGrid});
   if (def.rest_shape == RestShape::uv && (!def.mesh || def.mesh->uv.empty()))
     throw DefinitionError("cloth.rest_shape", "uv", "placed without uv of a mesh",
                           "give the mesh uv in metres");
@@ -61,7 +62,8 @@ void validate(const ClothDef& def) {
   if (def.fabric.locking_strain > 0 && !threads)
     throw DefinitionError("fabric.locking_strain", number_text(def.fabric.locking_strain),
                           "0 with springs that are not the fabric's threads",
-                          "take membrane_model triangles, or no direct_springs");
+                          "take membrane_model triangles, or no direct_springs")
+        .with(Range{0, 0});
   if (!def.direct_springs) return;
   visit_fields_of_direct_springs(*def.direct_springs, [](const FieldInfo& info, double value) {
     check_field("cloth.direct_springs.", info, value);

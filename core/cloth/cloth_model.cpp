@@ -111,7 +111,7 @@ ClothModel<Real> build_cloths(const std::vector<ClothDef>& defs) {
     try {
       append_cloth(build_cloth<Real>(defs[k]), model);
     } catch (const DefinitionError& error) {
-      throw DefinitionError(cloth_field(k, error.field), error.value, error.limit, error.hint);
+      throw error.renamed(cloth_field(k, error.field));
     }
   }
   return model;

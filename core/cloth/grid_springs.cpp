@@ -2,13 +2,18 @@
 
 #include "core/cloth/grid_springs.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <string>
 
 #include "core/error.h"
 
 namespace weft {
 namespace {
+
+/// Relative error of a limit that is told with nine digits.
+constexpr double kLimitRounding = 1e-8;
 
 /// A spring from each particle to (row + dr, column + dc), where that exists.
 struct Pattern {
@@ -50,13 +55,20 @@ GridStiffness grid_stiffness(const FabricDef& fabric, double cell_u, double cell
   k.warp = (fabric.stretch_warp - fabric.shear * ratio * ratio) / ratio;
   k.weft = (fabric.stretch_weft - fabric.shear / (ratio * ratio)) * ratio;
   k.shear = fabric.shear * (cell_u * cell_u + cell_v * cell_v) / (2 * cell_u * cell_v);
-  if (k.warp < 0 || k.weft < 0) {
-    const double most =
-        std::min(fabric.stretch_warp / (ratio * ratio), fabric.stretch_weft * ratio * ratio);
+  const double of_warp = fabric.stretch_warp / (ratio * ratio),
+               of_weft = fabric.stretch_weft * ratio * ratio;
+  const double most = std::min(of_warp, of_weft);
+  // The told limit is rounded, and as it is told it is allowed.
+  if (fabric.shear > most * (1 + kLimitRounding)) {
+    const std::string told = rounded_text(most, 9);
     throw DefinitionError("fabric.shear", number_text(fabric.shear),
-                          "0 to " + number_text(most) + " N/m for cells of this shape",
-                          "lower the shear stiffness or make the cells squarer");
+                          "0 to " + told + " N/m for cells of this shape",
+                          "lower the shear stiffness or make the cells squarer")
+        .with(Range{0, std::stod(told)}, {of_warp < of_weft ? "stretch_warp" : "stretch_weft",
+                                          of_warp < of_weft ? "stretch_weft" : "stretch_warp"});
   }
+  k.warp = std::max(0.0, k.warp);
+  k.weft = std::max(0.0, k.weft);
   return k;
 }
 

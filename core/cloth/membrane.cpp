@@ -6,6 +6,8 @@
 #include <cassert>
 #include <cmath>
 #include <limits>
+#include <string>
+#include <vector>
 
 #include "core/cloth/constants.h"
 #include "core/cloth/membrane_gradient.h"
@@ -18,18 +20,35 @@ double membrane_coupling(const FabricDef& fabric) {
   return fabric.poisson == kPoissonOfGrid ? fabric.shear : fabric.poisson * fabric.stretch_weft;
 }
 
+namespace {
+
+/// A number of five digits below another one.
+double just_below(double value) {
+  return std::stod(rounded_text(value * (1 - 1e-4), 5));
+}
+
+}  // namespace
+
 void refuse_indefinite_membrane(const FabricDef& fabric) {
   const double coupling = membrane_coupling(fabric);
   const double product = fabric.stretch_warp * fabric.stretch_weft;
   if (coupling == 0 || coupling * coupling < product) return;
   if (fabric.poisson == kPoissonOfGrid)
     throw DefinitionError("fabric.shear", number_text(fabric.shear),
-                          "below " + number_text(std::sqrt(product)) + " N/m without a poisson",
+                          "below " + rounded_text(std::sqrt(product), 9) + " N/m without a poisson",
                           "without a Poisson's ratio the shear stiffness also couples the threads; "
-                          "give fabric.poisson");
-  throw DefinitionError("fabric.poisson", number_text(fabric.poisson),
-                        "less than the root of stretch_warp / stretch_weft",
-                        "a fabric with this ratio would stretch by itself");
+                          "give fabric.poisson")
+        .with(Range{0, just_below(std::sqrt(product))},
+              fabric.stretch_warp < fabric.stretch_weft
+                  ? std::vector<std::string>{"poisson", "stretch_warp", "stretch_weft"}
+                  : std::vector<std::string>{"poisson", "stretch_weft", "stretch_warp"});
+  const double most =
+      fabric.stretch_weft > 0 ? std::sqrt(fabric.stretch_warp / fabric.stretch_weft) : 0;
+  throw DefinitionError(
+      "fabric.poisson", number_text(fabric.poisson),
+      "less than " + rounded_text(most) + ", the root of stretch_warp / stretch_weft",
+      "a fabric with this ratio would stretch by itself")
+      .with(Range{0, just_below(most)}, {"stretch_weft", "stretch_warp"});
 }
 
 RestCorners laid_flat(const std::array<Vec3d, 3>& x, const RestCorners& material) {

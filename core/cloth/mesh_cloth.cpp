@@ -336,8 +336,7 @@ ClothModel<Real> build_mesh_cloth(const ClothDef& def) {
   } catch (const DefinitionError& error) {
     const std::string places = "cloth.mesh.positions";
     if (!error.field.starts_with(places)) throw;
-    throw DefinitionError("cloth.mesh.uv" + error.field.substr(places.size()), error.value,
-                          error.limit, error.hint);
+    throw error.renamed("cloth.mesh.uv" + error.field.substr(places.size()));
   }
   for (const Index i : breadth_first_order(mesh.positions.size(), mesh.triangles))
     model.start_positions.push_back(

@@ -140,10 +140,8 @@ void World<Real>::reset() {
       hold(def_.pins[k]);
     } catch (const DefinitionError& error) {
       const std::size_t dot = error.field.find('.');
-      throw DefinitionError(
-          "pins[" + std::to_string(k) + "]" +
-              (dot == std::string::npos ? std::string() : error.field.substr(dot)),
-          error.value, error.limit, error.hint);
+      throw error.renamed("pins[" + std::to_string(k) + "]" +
+                          (dot == std::string::npos ? std::string() : error.field.substr(dot)));
     }
   }
   renew_clamps();

@@ -134,7 +134,8 @@ std::vector<ClothDef> cloths_to_build(const WorldDef& def) {
     if (cloth.fabric.locking_strain > 0 && solver_of(def) != SolverKind::verlet)
       throw DefinitionError(cloth_field(k, "fabric.locking_strain"),
                             number_text(cloth.fabric.locking_strain), "0 with this solver",
-                            "only verlet has threads that lock");
+                            "only verlet has threads that lock")
+          .with(Range{0, 0});
     if (relaxes_rigidly(def) && cloth.membrane_model == MembraneModel::automatic)
       cloth.membrane_model = MembraneModel::springs;
   }

@@ -6,8 +6,10 @@
 #include <string>
 
 #include "core/cloth/membrane.h"
+#include "core/error.h"
 #include "core/forces/air/air.h"
 #include "core/world/constants.h"
+#include "core/world/substep_causes.h"
 #include "core/world/world.h"
 
 namespace weft {
@@ -99,29 +101,53 @@ StabilityBound World<Real>::stability_bound(const ClothPart<Real>& part, SolverK
   return bound;
 }
 
+namespace {
+
+/// Throws DefinitionError if solving a part's dashpots of bending would take too many stages.
+/// @param longest  relaxation time that does not [s]
+template <class Real>
+void refuse_slow_bending(const ClothPart<Real>& part, std::size_t place, double longest) {
+  const double given = static_cast<double>(part.bending_time);
+  if (!(given > longest)) return;
+  const std::string most = rounded_text(longest * 0.995);
+  const bool warp = part.fabric.bending_warp >= part.fabric.bending_weft;
+  throw DefinitionError(cloth_field(place, "fabric.bending_damping"), rounded_text(given, 6),
+                        "at most " + most + " s on this mesh in this tick, for " +
+                            std::to_string(kMostDashpotStages) + " stages",
+                        "a coarser mesh, a pin whose border is not close beside particles, or a "
+                        "higher tick_rate allows more")
+      .with(Range{0, std::stod(most)}, {warp ? "bending_warp" : "bending_weft",
+                                        warp ? "bending_weft" : "bending_warp", "areal_density"});
+}
+
+}  // namespace
+
 /// Throws DefinitionError if a tick would take too many substeps, or stages of solved dashpots.
 template <class Real>
 void World<Real>::refuse_too_stiff() const {
-  for (std::size_t p = 0; p < model_.parts.size(); ++p) {
-    const double given = static_cast<double>(model_.parts[p].bending_time);
-    const double longest = solvers_.dashpots.longest_time(model_, p, tick_seconds());
-    if (given > longest)
-      throw DefinitionError(
-          "fabric.bending_damping", number_text(given),
-          "at most " + rounded_text(longest * 0.995) + " s on this mesh in this tick, for " +
-              std::to_string(kMostDashpotStages) + " stages",
-          "a coarser mesh, a pin whose border is not close beside particles, or a "
-          "higher tick_rate allows more");
-  }
+  for (std::size_t p = 0; p < model_.parts.size(); ++p)
+    refuse_slow_bending(model_.parts[p], p,
+                        solvers_.dashpots.longest_time(model_, p, tick_seconds()));
   const SolverKind kind = solver_of(def_);
   if (choose_substeps(kind) <= kMostSubsteps) return;
   EnvironmentDef vacuum = environment_;
   vacuum.air_density = 0;
-  const bool by_air = choose_substeps(kind, vacuum) <= kMostSubsteps;
   const std::string most = std::to_string(kMostSubsteps) + " substeps a tick";
-  throw DefinitionError(by_air ? "environment" : "fabric", "more than " + most, "at most " + most,
-                        by_air ? "take weaker wind, thinner air or heavier cloth"
-                               : "lower the stiffness or the resolution, or raise tick_rate");
+  if (choose_substeps(kind, vacuum) <= kMostSubsteps)
+    throw DefinitionError("environment", "more than " + most, "at most " + most,
+                          "take weaker wind, thinner air or heavier cloth")
+        .with({}, {"areal_density", "air_normal", "air_tangential"});
+  const auto needed = [&](const ClothPart<Real>& part) {
+    return substeps_for(stability_bound(part, kind, vacuum), tick_seconds(), 1);
+  };
+  std::size_t worst = 0;
+  for (std::size_t p = 1; p < model_.parts.size(); ++p)
+    if (needed(model_.parts[p]) > needed(model_.parts[worst])) worst = p;
+  const SubstepCauses causes = substep_causes(model_.parts[worst], kind, tick_seconds());
+  throw DefinitionError(cloth_field(worst, "fabric"), "more than " + most, "at most " + most,
+                        std::string("lower the ") + (causes.damping ? "damping" : "stiffness") +
+                            " or the resolution, or raise tick_rate")
+      .with({}, causes.fields);
 }
 
 template <class Real>

@@ -6,22 +6,49 @@
 
 #include "core/definition.h"
 #include "core/world/cost.h"
+#include "core/world/substep_causes.h"
 #include "server/room/room.h"
 #include "server/translate/translate_settings.h"
 
 namespace weft::server {
+namespace {
+
+/// A world with a fabric that it can be made of, at a cost that is allowed. Throws DefinitionError.
+std::unique_ptr<ServedWorld> changed_world(const ServedWorld& world, const FabricWanted& wanted) {
+  auto changed = world.with_fabric(wanted.cloth, wanted.fabric);
+  try {
+    check_cost(changed->cost_in(changed->environment()), "fabric", "too costly");
+  } catch (CostError& error) {
+    error.causes = substep_causes(changed->model().parts[wanted.cloth], solver_of(changed->def()),
+                                  changed->tick_seconds())
+                       .fields;
+    throw;
+  }
+  return changed;
+}
+
+}  // namespace
 
 Room::Outcome Room::apply(proto::ViewerId, const proto::Set& command) {
-  const EnvironmentDef environment = with_settings(world_->environment(), command);
-  validate(environment);
   const auto fabric = fabric_wanted(*world_, command);
   if (!fabric) return fabric.error();
   const std::optional<FabricWanted>& wanted = *fabric;
   std::unique_ptr<ServedWorld> changed;  // replaces the present world once nothing can fail
-  const auto change = [&] { changed = world_->with_fabric(wanted->cloth, wanted->fabric); };
-  if (wanted && !within_limit(change, kBetweenTicks)) throw Stopped();
-  const TickCost cost = (changed ? changed : world_)->cost_in(environment);
-  check_cost(cost, wanted ? "fabric" : "set", "environment");
+  const auto change = [&] { changed = changed_world(*world_, *wanted); };
+  try {
+    if (wanted && !within_limit(change, kBetweenTicks)) throw Stopped();
+  } catch (const DefinitionError& error) {
+    return refused_fabric(error, command);
+  }
+  const EnvironmentDef environment = with_settings(world_->environment(), command);
+  TickCost cost;
+  try {
+    validate(environment);
+    cost = (changed ? changed : world_)->cost_in(environment);
+    check_cost(cost, "environment", "this air");
+  } catch (const DefinitionError& error) {
+    return refused_environment(error, command);
+  }
   if (options_.others) {
     if (auto error = options_.others->admit(options_.name, cost)) return *std::move(error);
   }

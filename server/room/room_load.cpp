@@ -37,7 +37,7 @@ WorldDef Room::definition_of(const std::string& name, const std::string& json) c
     throw;  // is reported as it is
   } catch (const DefinitionError& error) {
     const std::string field = error.field == "scene" ? error.field : "scene." + error.field;
-    throw DefinitionError(field, error.value, error.limit, error.hint);
+    throw error.renamed(field);
   }
 }
 

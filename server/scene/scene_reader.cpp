@@ -167,7 +167,7 @@ class Reader {
     try {
       take(meshes_(placement.source));
     } catch (const DefinitionError& error) {
-      throw DefinitionError(at("source"), error.value, error.limit, error.hint);
+      throw error.renamed(at("source"));
     }
   }
 
@@ -284,7 +284,7 @@ void check_whole(const WorldDef& def) {
     repair_objects(repaired);
     const World<float> world(repaired);
   } catch (const DefinitionError& error) {
-    throw DefinitionError(file_path(error.field), error.value, error.limit, error.hint);
+    throw error.renamed(file_path(error.field));
   }
 }
 

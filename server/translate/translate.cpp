@@ -1,6 +1,7 @@
 #include "server/translate/translate.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <utility>
@@ -333,7 +334,12 @@ proto::Error to_wire(const DefinitionError& error) {
       proto::make_error(cost ? proto::ErrorCode::too_costly : proto::ErrorCode::out_of_range,
                         error.what(), error.hint);
   out.field = error.field;
-  out.value = proto::quoted_value(error.value);
+  double number = 0;
+  const char* const end = error.value.data() + error.value.size();
+  const auto [stop, status] = std::from_chars(error.value.data(), end, number);
+  const bool is_number = status == std::errc() && stop == end && std::isfinite(number);
+  out.value = is_number ? proto::number_text(number) : proto::quoted_value(error.value);
+  if (error.range) out.limit = proto::Limit{error.range->minimum, error.range->maximum, {}, {}};
   return out;
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <map>
+#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -48,6 +49,36 @@ class FabricTeller {
  private:
   const FabricDef& fabric_;
   std::map<std::string_view, double> values_;
+};
+
+/// Another one that reads what was sent.
+class FabricSent {
+ public:
+  void optional(const proto::Field& field, const std::optional<std::string>& value) {
+    if (value) preset_ = {field.name, proto::quoted_value(*value)};
+  }
+  void optional(const proto::Field& field, const std::optional<double>& value) {
+    known_.insert(field.name);
+    if (value) sent_[field.name] = proto::number_text(*value);
+  }
+  void one_at_least(const char*) {}
+
+  bool knows(const std::string& name) const { return known_.contains(name); }
+
+  /// Name and value of the one that is at fault; empty if that is not clear.
+  /// @param names  those that may be, from the one that is most likely
+  std::pair<std::string, std::string> blamed(const std::vector<std::string>& names) const {
+    for (const std::string& name : names)
+      if (const auto found = sent_.find(name); found != sent_.end()) return *found;
+    if (!preset_.first.empty()) return preset_;
+    if (sent_.size() == 1) return *sent_.begin();
+    return {};
+  }
+
+ private:
+  std::set<std::string> known_;
+  std::map<std::string, std::string> sent_;  ///< as JSON, by name
+  std::pair<std::string, std::string> preset_;
 };
 
 std::vector<proto::FabricChange> fabrics_of(const std::vector<ClothDef>& cloths) {
@@ -141,6 +172,45 @@ proto::Result<std::optional<FabricWanted>> fabric_wanted(const ServedWorld& worl
   FabricSetter setter(fabric);
   proto::FabricChange::describe(setter, *set.fabric);
   return std::optional(FabricWanted{*cloth, std::move(fabric)});
+}
+
+proto::Error refused_fabric(const DefinitionError& error, const proto::Set& set) {
+  FabricSent sent;
+  proto::FabricChange::describe(sent, *set.fabric);
+  const std::string name = error.field.substr(error.field.rfind('.') + 1);
+  std::vector<std::string> names = {name};
+  names.insert(names.end(), error.causes.begin(), error.causes.end());
+  const auto [blamed, value] = sent.blamed(names);
+  proto::Error out = to_wire(error);
+  out.field = blamed.empty() ? "fabric" : "fabric." + blamed;
+  out.value = value;
+  if (blamed == name) {
+    out.message = DefinitionError(out.field, value, error.limit, error.hint).what();
+    return out;
+  }
+  out.limit.reset();  // is another field's
+  out.message = out.field + (value.empty() ? "" : " = " + value) + ": ";
+  if (sent.knows(name)) {
+    out.message += "fabric." + name + " = ";
+    out.hint = "change " + out.field + " less, or send a fabric." + name +
+               " that is allowed beside it; " + error.hint;
+  }
+  out.message += error.value + "; allowed is " + error.limit + " (" + out.hint + ")";
+  return out;
+}
+
+proto::Error refused_environment(const DefinitionError& error, const proto::Set& set) {
+  proto::Error out = to_wire(error);
+  const std::string group = "environment.";
+  if (error.field.starts_with(group)) {
+    out.field = error.field.substr(group.size());
+    return out;
+  }
+  // The air costs too much. Of what was sent, what weighs most is named.
+  out.field = set.wind ? "wind" : set.fans ? "fans" : set.gust_speed ? "gust_speed" : "air_density";
+  out.value.clear();
+  out.message = out.field + ": allowed is " + error.limit + " (" + error.hint + ")";
+  return out;
 }
 
 void tell_settings(const ServedWorld& world, proto::State& state) {

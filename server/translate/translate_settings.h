@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/error.h"
 #include "proto/messages/settings.h"
 #include "server/translate/translate.h"
 
@@ -28,6 +29,14 @@ struct FabricWanted {
 /// preset.
 proto::Result<std::optional<FabricWanted>> fabric_wanted(const ServedWorld& world,
                                                          const proto::Set& set);
+
+/// The refusal of a `set` whose fabric is one that the physics refuses: of a field that was sent,
+/// by its path in the command.
+/// @param set  has a fabric
+proto::Error refused_fabric(const DefinitionError& error, const proto::Set& set);
+
+/// The same of its environment.
+proto::Error refused_environment(const DefinitionError& error, const proto::Set& set);
 
 /// Writes the environment and the fabrics into a state.
 void tell_settings(const ServedWorld& world, proto::State& state);

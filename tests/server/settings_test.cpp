@@ -109,7 +109,7 @@ TEST_CASE("a fabric that cannot be, or costs too much, is refused by field and c
   const std::array<std::array<const char*, 3>, 4> table = {{
       {R"("fabric":{"preset":"gossamer"})", "unknown_value", "fabric.preset"},
       {R"("fabric":{"stretch_warp":1000000,"stretch_weft":1000000,"areal_density":0.001})",
-       "out_of_range", "fabric"},
+       "out_of_range", "fabric.stretch_warp"},
       {R"("cloth":9,"fabric":{"friction":1})", "out_of_range", "cloth"},
       {R"("cloth":"skirt","fabric":{"friction":1})", "unknown_value", "cloth"},
   }};
@@ -132,7 +132,8 @@ TEST_CASE("a fabric whose ticks would cost more than the server allows is too co
   const json answer = t.say(1, R"({"op":"set","id":1,"fabric":{"stretch_warp":8000,)"
                                R"("stretch_weft":8000,"areal_density":0.01}})");
   CHECK(answer["code"] == "too_costly");
-  CHECK(answer["field"] == "fabric");
+  CHECK(answer["field"] == "fabric.stretch_warp");
+  CHECK(answer["value"] == 8000);
   CHECK(t.room->world().def().cloths[0].fabric.stretch_warp == FabricDef().stretch_warp);
 }
 
