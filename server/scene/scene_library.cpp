@@ -5,7 +5,6 @@
 #include <fstream>
 #include <system_error>
 
-#include "core/error.h"
 #include "core/scenes/built_in_meshes.h"
 #include "server/scene/mesh_child.h"
 
@@ -73,7 +72,9 @@ void SceneLibrary::read_folder(const std::string& directory) {
     try {
       read();
     } catch (const DefinitionError& problem) {
-      problems_.push_back(path.filename().string() + ": " + problem.what());
+      const std::string name = path.filename().string();
+      problems_.push_back(name + ": " + problem.what());
+      faults_.emplace(name, problem);
     }
   };
   for (const fs::path& path : mesh_files)
@@ -91,6 +92,7 @@ MeshFile SceneLibrary::mesh_of_folder(const std::string& name) const {
   if (is_built_in(name)) return built_in_mesh(name, mesh_directory_);
   const auto found = meshes_.find(name);
   if (found != meshes_.end()) return found->second;
+  if (const auto fault = faults_.find(name); fault != faults_.end()) throw fault->second;
   std::string names;
   for (const std::string& each : built_in_mesh_names()) names += each + ", ";
   for (const auto& [each, mesh] : meshes_) names += each + ", ";
@@ -110,7 +112,11 @@ WorldDef SceneLibrary::named(const std::string& name) const {
 }
 
 WorldDef SceneLibrary::opened(const std::string& name_or_path) const {
-  if (!name_or_path.ends_with(".json")) return named(name_or_path);
+  if (!name_or_path.ends_with(".json")) {
+    const auto fault = faults_.find(name_or_path + ".json");
+    if (fault == faults_.end()) return named(name_or_path);
+    throw fault->second.renamed(fault->first + ": " + fault->second.field);
+  }
   const fs::path path = name_or_path;
   const auto beside = [&](const std::string& name) {
     if (is_built_in(name)) return built_in_mesh(name, mesh_directory_);
@@ -123,8 +129,7 @@ WorldDef SceneLibrary::opened(const std::string& name_or_path) const {
     return def;
   } catch (const DefinitionError& error) {
     if (error.field == "--scene") throw;
-    throw DefinitionError(path.filename().string() + ": " + error.field, error.value, error.limit,
-                          error.hint);
+    throw error.renamed(path.filename().string() + ": " + error.field);
   }
 }
 

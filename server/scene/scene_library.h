@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/error.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world_def.h"
 #include "server/scene/scene_file.h"
@@ -17,7 +18,8 @@ namespace weft::server {
 ///
 /// The folder is read once, at the start: its meshes are parsed then, each in a separate process,
 /// and its scenes checked. So a client's `load` never opens a file, and no path from a client
-/// reaches the disk. Invalid files of the folder are left out and listed in `problems`.
+/// reaches the disk. Invalid files of the folder are left out and listed in `problems`; whoever
+/// asks for one by name is told its own reason.
 class SceneLibrary {
  public:
   /// @param mesh_directory   of the built-in meshes that are files
@@ -28,7 +30,8 @@ class SceneLibrary {
   WorldDef named(const std::string& name) const;
 
   /// Opens the argument of `--scene`: a name, or a path that ends in .json, whose meshes are
-  /// built-in ones or files beside it. Throws DefinitionError.
+  /// built-in ones or files beside it. Throws DefinitionError; that of a file of the folder that
+  /// has this name and is invalid, also where a built-in scene has it too.
   WorldDef opened(const std::string& name_or_path) const;
 
   /// Reads a scene that a client sent as JSON: its meshes are built-in ones or plain names of the
@@ -49,6 +52,7 @@ class SceneLibrary {
   std::map<std::string, MeshFile> meshes_;  ///< of the folder, by file name
   std::map<std::string, WorldDef> scenes_;  ///< of the folder
   std::vector<std::string> problems_;
+  std::map<std::string, DefinitionError> faults_;  ///< of invalid files, by file name
 };
 
 /// The directory of a file that comes with the program, e.g. "meshes"; empty if it is unknown.

@@ -171,6 +171,23 @@ class HostileMeshes(unittest.TestCase):
                 told = result.stderr.rpartition("ABORTING\n")[2]
                 self.assertEqual(told.count("\n"), 1, result.stderr)
 
+    def test_a_faulty_file_of_the_folder_is_told_by_its_own_reason_as_its_path_is(self):
+        with tempfile.TemporaryDirectory(prefix="weft_faulty_") as folder:
+            fill(Path(folder))
+            for name, content in (("curtain", {"cloths": [{"rowz": 3}]}),  # also a built-in one
+                                  ("eight", {"cloths": [{"form": "mesh", "mesh": {"source": "eight.stl"}}]})):
+                (Path(folder) / f"{name}.json").write_text(json.dumps(content))
+            for name, what in (("wrong", "wrong.json: cloths[0].rowz = 3"), ("curtain", "curtain.json: cloths[0].rowz"),
+                               ("eight", "eight.json: cloths[0].mesh.source = eight.stl: allowed is a whole")):
+                with self.subTest(name=name):
+                    by_path, by_name = (
+                        subprocess.run([PROGRAM, "simulate", *scene, "--ticks", "1"], capture_output=True,
+                                       text=True, timeout=100)
+                        for scene in (("--scene", f"{folder}/{name}.json"), ("--scenes", folder, "--scene", name)))
+                    self.assertEqual(by_name.returncode, 2, by_name)
+                    self.assertEqual(by_name.stderr, by_path.stderr)
+                    self.assertIn(what, by_name.stderr)
+
     def test_a_good_one_is_taken(self):
         self.assertEqual(self.simulate("square.obj").returncode, 0)
 
