@@ -101,9 +101,10 @@ inline constexpr double kMostLever = 4;
 /// rests farther off. Smaller: it trembles.
 inline constexpr double kTouchSlack = 2e-5;
 
-/// Push-out: fraction of the lack taken each substep [1], and its largest speed [m/s]. Larger:
-/// overlaps close sooner, and throw light cloth.
-inline constexpr double kPushOutPart = 0.1, kPushOutSpeed = 0.5;
+/// Push-out: fraction of the lack taken each substep [1]; its largest speed, and that of what is
+/// inside an object [m/s]. Larger: overlaps close sooner, and cloth that is bent over edges or
+/// hangs from what is pushed is stretched and thrown.
+inline constexpr double kPushOutPart = 0.1, kPushOutSpeed = 0.05, kLeadOutSpeed = 0.5;
 
 /// Sweeps of projected Gauss-Seidel over the rows.
 inline constexpr int kSweeps = 2;

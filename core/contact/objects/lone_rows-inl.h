@@ -76,7 +76,9 @@ HWY_INLINE hn::Mask<D> aim(D d, LoneBlock<Real>& rows, const LonePass<Real>& pas
   const auto lack = hn::Sub(thickness, gap);
   const auto pushed = hn::And(acts, hn::Gt(lack, slack));
   if (hn::AllFalse(d, pushed)) return pushed;
-  const auto part = hn::Mul(lack, hn::Set(d, pass.push_part)), most = hn::Set(d, pass.push_most);
+  const auto part = hn::Mul(lack, hn::Set(d, pass.push_part));
+  const auto most = hn::IfThenElse(hn::Gt(lack, thickness), hn::Set(d, pass.lead_most),
+                                   hn::Set(d, pass.push_most));
   const auto step = hn::IfThenElse(hn::Lt(most, part), most, part);
   x = select(pushed, x + n * step, x);
   return pushed;

@@ -25,6 +25,7 @@ struct LonePass {
   Real slack = 0;               ///< a gap wider than the thickness by this still touches [m]
   Real push_part = 0;           ///< part of a lack that is pushed out in a step; 0: nothing is
   Real push_most = 0;           ///< but no farther than this [m]
+  Real lead_most = 0;           ///< the same of what is inside [m]
   const Real* from = nullptr;   ///< where ways begin [m]
   const Real* reach = nullptr;  ///< how far each particle may go [m]
   Real* travel2 = nullptr;      ///< squared way, now or after the drift, whichever is longer [m^2]

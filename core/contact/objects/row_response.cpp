@@ -224,6 +224,7 @@ LonePass<Real> lone_pass(ObjectSolve<Real>& solve, Real dt, bool pushes) {
           Real(kTouchSlack),
           pushes ? Real(kPushOutPart) : Real(0),
           Real(kPushOutSpeed) * dt,
+          Real(kLeadOutSpeed) * dt,
           solve.reach.x.data()->data(),
           solve.reach.reach.data(),
           solve.reach.travel2.data(),
@@ -286,7 +287,11 @@ void push_out(ObjectSolve<Real>& solve, Real smallest_gap, Real dt) {
     const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
     if (!moves && response.pushed.empty()) response.x_unpushed = state.x;
-    const Real step = std::min(lack * Real(kPushOutPart), Real(kPushOutSpeed) * dt);
+    // Other rows may have moved the point already.
+    const Real done = row.normal.dot(weighted(row, state.x) - weighted(row, response.x_unpushed));
+    const Real fastest = Real(lack > row.thickness ? kLeadOutSpeed : kPushOutSpeed);
+    const Real step = std::min(lack * Real(kPushOutPart), fastest * dt - done);
+    if (!(step > 0)) continue;
     share_out<Real>(row, push_way(solve, row) * step, state.x);
     response.pushed.push_back(r);
   }

@@ -151,7 +151,7 @@ struct Layer {
     lone.find(rows, std::vector<RowRoom<float>>(rows.size(), {{}, -1, 1}), {ContactDef{}}, count);
   }
   LoneResponse<float> respond(Executor* executor) {
-    LonePass<float> pass{x.data(), v.data(), 1e-3f, 1e-6f, 0.2f, 5e-4f};
+    LonePass<float> pass{x.data(), v.data(), 1e-3f, 1e-6f, 0.2f, 5e-4f, 5e-3f};
     pass.from = from.data();
     pass.reach = reach.data();
     pass.travel2 = travel2.data();
