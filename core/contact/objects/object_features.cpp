@@ -118,6 +118,20 @@ bool are_apart(const Vec3<Real>& a, const Vec3<Real>& b, const Vec3<Real>& c, co
   return (closest.p - closest.q).squaredNorm() > most * most;
 }
 
+/// Whether what lies on the inner side of a ridge or a corner of a closed mesh goes on outward: its
+/// cloth is just leaving the object, or it is inside by itself, as where it cuts a ridge between
+/// particles that are outside. What lies beside a blade is outside, and stays on its side.
+/// @param particles,weights  of the point of the cloth there
+template <class Real>
+bool goes_outward(const ObjectRowSource<Real>& source, std::span<const Index> particles,
+                  const std::array<Real, 3>& weights, std::size_t collider, RowList<Real>& rows) {
+  if (still_leaves(cloth_of(source.cloths, particles[0]), collider, rows.exits)) return true;
+  Vec3<Real> point = Vec3<Real>::Zero();
+  for (std::size_t k = 0; k < particles.size(); ++k)
+    point += source.state.x[at_index(particles[k])] * weights[k];
+  return distance_from(source.shapes, collider, point) < 0;
+}
+
 /// Adds the rows of pairs of edges of the cloth with ridges of mesh m. @return closest points
 /// computed
 template <class Real>
@@ -151,17 +165,16 @@ std::uint64_t add_edges_on_mesh(const ObjectRowSource<Real>& source, std::size_t
     ContactBarrier<Real> barrier;
     barrier.distance = std::max(distance, Real(0));
     if (!(s.gap > kNoDirection)) normal = outward;
-    // An edge that cuts a ridge of what its cloth is just leaving goes on outward.
+    const std::array<Real, 3> weights = {static_cast<Real>(s.weight[0]),
+                                         static_cast<Real>(s.weight[1]), 0};
     if (mesh.closed && s.inside && normal.dot(outward) < 0 &&
-        still_leaves(cloth_of(source.cloths, e[0]), collider, rows.exits)) {
+        goes_outward<Real>(source, e, weights, collider, rows)) {
       normal = -normal;
       barrier.distance = -barrier.distance;
     }
     barrier.normal = frame.world_direction(normal);
     barrier.top = top_of(source.shapes, m, barrier.normal, {other.a, other.b});
-    add_row(source, {e[0], e[1]},
-            {static_cast<Real>(s.weight[0]), static_cast<Real>(s.weight[1]), 0}, barrier, collider,
-            responds, rows);
+    add_row(source, {e[0], e[1]}, weights, barrier, collider, responds, rows);
   };
   for_pairs_that_may_meet(source, scratch, source.cloths.patches.edges, pairs, mesh.edge_rises,
                           kEdgeSpan, collider, add);
@@ -194,16 +207,15 @@ std::uint64_t add_triangles_on_mesh(const ObjectRowSource<Real>& source, std::si
     ContactBarrier<Real> barrier;
     barrier.distance = std::max(distance, Real(0));
     Vec3<Real> normal = s.gap > kNoDirection ? (-s.normal).template cast<Real>().eval() : outward;
-    // A triangle that a corner pierces goes on outward, as an edge does that cuts a ridge.
+    std::array<Real, 3> weights;
+    for (std::size_t n = 0; n < 3; ++n) weights[n] = static_cast<Real>(-s.weight[n + 1]);
     if (mesh.closed && s.inside && normal.dot(outward) < 0 &&
-        still_leaves(cloth_of(source.cloths, t[0]), collider, rows.exits)) {
+        goes_outward<Real>(source, t, weights, collider, rows)) {
       normal = -normal;
       barrier.distance = -barrier.distance;
     }
     barrier.normal = frame.world_direction(normal);
     barrier.top = top_of(source.shapes, m, barrier.normal, {pair.feature});
-    std::array<Real, 3> weights;
-    for (std::size_t n = 0; n < 3; ++n) weights[n] = static_cast<Real>(-s.weight[n + 1]);
     add_row(source, {t[0], t[1], t[2]}, weights, barrier, collider, responds, rows);
   };
   for_pairs_that_may_meet(source, scratch, source.cloths.patches.triangles, pairs,

@@ -1,7 +1,11 @@
+#include <numbers>
+
 #include <catch2/catch.hpp>
 
+#include "core/cloth/fabric_presets.h"
 #include "core/world/crossing_counter.h"
 #include "core/world/world.h"
+#include "tests/support/cylinders.h"
 
 // Cloth that starts inside objects: named, led out whole, and the guarantee is back.
 
@@ -71,6 +75,32 @@ TEST_CASE(
   for (int k = 0; k < 60; ++k) {
     world.step();
     CHECK(counter.count(world).total() == 0);
+  }
+}
+
+TEST_CASE(
+    "cloth that starts less than its thickness inside facets, or cuts ridges alone, comes out") {
+  constexpr double kRadius = 0.1985;
+  const bool fine = GENERATE(true, false), all_inside = GENERATE(true, false);
+  CAPTURE(fine, all_inside);
+  const double radius = all_inside ? kRadius - 0.0015 : kRadius + 0.00005;
+  WorldDef def;
+  ClothDef& cloth = def.cloths[0];
+  cloth.mesh =
+      ClothMesh{test::rolled(radius, std::numbers::pi / 3, all_inside ? 24 : 9, 7, 0.95, 1.2), {}};
+  cloth.fabric = make_fabric("cotton");
+  cloth.fabric.thickness = 0.003;
+  def.environment.gravity.setZero();
+  def.colliders = {{"cylinder", MeshDef{fine ? test::closed_cylinder(kRadius, 2, 64, 60)
+                                             : test::closed_cylinder(kRadius, 2, 128, 2)}}};
+  World<float> world(def);
+  REQUIRE(world.deepest_penetration() > 1e-4);
+  CrossingCounter<float> counter;
+  for (int tick = 0; tick < 60; ++tick) {
+    REQUIRE_FALSE(world.step().divergence);
+    if (tick < 6) continue;
+    REQUIRE(counter.count(world).total() == 0);
+    CHECK(world.deepest_penetration() <= 0);
   }
 }
 

@@ -8,6 +8,7 @@
 #include "core/cloth/fabric_presets.h"
 #include "core/contact/objects/constants.h"
 #include "core/world/world.h"
+#include "tests/support/cylinders.h"
 #include "tests/support/worlds.h"
 
 // Cloth that becomes thicker while it lies on objects: it is lifted, and not thrown.
@@ -20,28 +21,6 @@ double highest(const World<float>& world) {
   double top = -1e9;
   for (const Vec3f& x : world.state().x) top = std::max(top, static_cast<double>(x[1]));
   return top;
-}
-
-/// A strip of a cylinder about the y axis.
-/// @param angle  that it covers [rad]
-TriangleMesh rolled(double radius, double angle, Index columns, Index rows, double from,
-                    double to) {
-  TriangleMesh mesh;
-  for (Index r = 0; r < rows; ++r) {
-    for (Index c = 0; c <= columns; ++c) {
-      const double turn = angle * c / columns;
-      mesh.positions.emplace_back(radius * std::cos(turn), from + (to - from) * r / (rows - 1),
-                                  radius * std::sin(turn));
-    }
-  }
-  for (Index r = 0; r + 1 < rows; ++r) {
-    for (Index c = 0; c < columns; ++c) {
-      const Index a = r * (columns + 1) + c, b = a + 1, d = a + columns + 1;
-      mesh.triangles.push_back({a, d, d + 1});
-      mesh.triangles.push_back({a, d + 1, b});
-    }
-  }
-  return mesh;
 }
 
 }  // namespace
@@ -89,13 +68,14 @@ TEST_CASE("cloth rolled on a cylinder that becomes thicker goes out as it is pus
   CAPTURE(mesh);
   WorldDef def;
   ClothDef& cloth = def.cloths[0];
-  cloth.mesh = ClothMesh{rolled(kRadius + 0.0005, std::numbers::pi / 3, 48, 24, 1.2, 0.95), {}};
+  cloth.mesh =
+      ClothMesh{test::rolled(kRadius + 0.0005, std::numbers::pi / 3, 48, 24, 1.2, 0.95), {}};
   cloth.fabric = make_fabric("cotton");
   cloth.fabric.thickness = 0.0004;
   def.environment.gravity.setZero();
   def.environment.air_density = 0;
   ShapeDef shape = CapsuleDef{Vec3d(0, 0, 0), Vec3d(0, 2, 0), kRadius};
-  if (mesh) shape = MeshDef{rolled(kRadius, 2 * std::numbers::pi, 64, 60, 2, 0)};
+  if (mesh) shape = MeshDef{test::rolled(kRadius, 2 * std::numbers::pi, 64, 60, 2, 0)};
   def.colliders = {{"cylinder", shape}};
   const World<float> at_rest(def);
   FabricDef thick = cloth.fabric;
