@@ -39,6 +39,16 @@ Vec3<Real> push_way(const ObjectSolve<Real>& solve, const ContactRow<Real>& row)
   return facing > Real(kFacing) ? Vec3<Real>(press / facing) : row.normal;
 }
 
+/// How far a row's point may be pushed on [m], others having moved it already. That does not count
+/// while objects press: what holds on both sides of a layer must push alike, and as fast.
+template <class Real>
+Real most_push(const ObjectSolve<Real>& solve, const ContactRow<Real>& row, Real lack, Real dt) {
+  const Real led = Real(kLeadOutSpeed) * dt;
+  if (solve.motion.any_press) return led;
+  const Vec3<Real> done = weighted(row, solve.state.x) - weighted(row, solve.response.x_unpushed);
+  return (lack > row.thickness ? led : Real(kPushOutSpeed) * dt) - row.normal.dot(done);
+}
+
 /// Returns particles that a push brought too near to any plane to where they were: between objects
 /// that close, or where cloth is drawn between two, one pushes it out into the other. What started
 /// inside is led out however its edges lie.
@@ -223,7 +233,7 @@ LonePass<Real> lone_pass(ObjectSolve<Real>& solve, Real dt, bool pushes) {
           dt,
           Real(kTouchSlack),
           pushes ? Real(kPushOutPart) : Real(0),
-          Real(kPushOutSpeed) * dt,
+          Real(solve.motion.any_press ? kLeadOutSpeed : kPushOutSpeed) * dt,
           Real(kLeadOutSpeed) * dt,
           solve.reach.x.data()->data(),
           solve.reach.reach.data(),
@@ -287,10 +297,7 @@ void push_out(ObjectSolve<Real>& solve, Real smallest_gap, Real dt) {
     const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
     if (!(lack > Real(kTouchSlack))) continue;
     if (!moves && response.pushed.empty()) response.x_unpushed = state.x;
-    // Other rows may have moved the point already.
-    const Real done = row.normal.dot(weighted(row, state.x) - weighted(row, response.x_unpushed));
-    const Real fastest = Real(lack > row.thickness ? kLeadOutSpeed : kPushOutSpeed);
-    const Real step = std::min(lack * Real(kPushOutPart), fastest * dt - done);
+    const Real step = std::min(lack * Real(kPushOutPart), most_push(solve, row, lack, dt));
     if (!(step > 0)) continue;
     share_out<Real>(row, push_way(solve, row) * step, state.x);
     response.pushed.push_back(r);

@@ -82,7 +82,7 @@ std::size_t check_ticks(World<float>& world, int ticks) {
       const Sum sum = sums[last];
       sums.erase(last);
       const Vec3d force = sum.impulse / world.tick_seconds();
-      const double rounding = 1e-9 + 2e-7 * force.norm();  // of the tick's length, a float
+      const double rounding = 1e-9 + 1e-7 * force.norm();  // of the tick's length, a float
       REQUIRE((contact.force() - force).norm() < rounding);
       if (sum.along.norm() == 0) continue;
       REQUIRE(std::abs(contact.normal_force - sum.along.normalized().dot(force)) < rounding);
