@@ -18,8 +18,8 @@ namespace weft::server {
 ///
 /// The folder is read once, at the start: its meshes are parsed then, each in a separate process,
 /// and its scenes checked. So a client's `load` never opens a file, and no path from a client
-/// reaches the disk. Invalid files of the folder are left out and listed in `problems`; whoever
-/// asks for one by name is told its own reason.
+/// reaches the disk. Invalid files of the folder are left out and listed in `problems`; a
+/// request for one by name is answered with its own reason.
 class SceneLibrary {
  public:
   /// @param mesh_directory   of the built-in meshes that are files
