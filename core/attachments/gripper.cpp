@@ -105,14 +105,14 @@ void plan_middle(double seconds, double thickest, const ColliderStates& collider
   gripper.stays = closes && (gripper.stays || stops);
   const double most = gripper.def.max_force;
   const double hold = gripper.gripping ? 0 : closes ? std::min(gripper.force, most) : most;
-  Errand errand{gripper.target, gripper.speed, gripper.turn_speed, hold, kPressingSlope};
+  MotionGoal goal{gripper.target, gripper.speed, gripper.turn_speed, hold, kPressingSlope};
   const Vec3d back = way_back(gripper, colliders[gripper.jaw[0]], stops, thickest, seconds);
   if (gripper.stays || !back.isZero(0))
-    errand.goal = {gripper.pose.position + back, gripper.pose.rotation};
+    goal.pose = {gripper.pose.position + back, gripper.pose.rotation};
   middle.pose = gripper.pose;
   middle.max_force = hold;
   const ColliderPair own = {static_cast<Index>(gripper.jaw[0]), static_cast<Index>(gripper.jaw[1])};
-  plan_object(errand, own, seconds, colliders, middle);
+  plan_object(goal, own, seconds, colliders, middle);
 }
 
 /// Whether the jaws were stopped by more than the layer that both have in front of them: by

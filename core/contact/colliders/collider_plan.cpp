@@ -20,9 +20,9 @@ double allowed_fraction(double displacement, double most) {
 }
 
 /// Where a collider is sent, for the end of the tick.
-std::optional<Errand> errand_of(const ColliderDef& def, double time, const ColliderState& state) {
+std::optional<MotionGoal> goal_of(const ColliderDef& def, double time, const ColliderState& state) {
   const auto to = [&state](const Pose& goal, double speed, double turn_speed) {
-    return Errand{goal, speed, turn_speed, state.max_force, 0};
+    return MotionGoal{goal, speed, turn_speed, state.max_force, 0};
   };
   if (state.move) return to(state.move->target, state.move->speed, state.move->turn_speed);
   if (def.motion.keyframes.empty()) return std::nullopt;
@@ -85,10 +85,10 @@ double advance_against(const ColliderPair& own, double step, double most,
 /// [m]: it goes no farther that way, but to where the layer has its thickness, and presses
 /// with its force as long as its goal lies there. It moves on along the layer. Where layers beside
 /// resist with its force it does not press besides.
-Vec3d step_along_pinch(const Errand& errand, const ColliderPair& own, double seconds,
+Vec3d step_along_pinch(const MotionGoal& goal, const ColliderPair& own, double seconds,
                        const ColliderStates& states, ColliderState& object) {
-  assert(seconds > 0 && errand.press >= 0);
-  const Vec3d step = errand.goal.position - object.pose.position;
+  assert(seconds > 0 && goal.press >= 0);
+  const Vec3d step = goal.pose.position - object.pose.position;
   const double most = kYieldSpeed * seconds;
   if (!object.pinches()) {
     // What has let go for a moment is met again slowly.
@@ -105,11 +105,11 @@ Vec3d step_along_pinch(const Errand& errand, const ColliderPair& own, double sec
   const double into = step.dot(pinch);
   const double resistance = std::max(0.0, object.impulse.dot(pinch) / seconds);
   const bool stands = into > -kPressingDepth && !object.forced;
-  const bool deep = into > kPressingDepth && into > errand.slope * step.norm();
-  const bool presses = stands && deep && resistance < errand.press;
+  const bool deep = into > kPressingDepth && into > goal.slope * step.norm();
+  const bool presses = stands && deep && resistance < goal.press;
   const double advance = presses ? advance_against(own, into, most, states, object) : 0;
   object.press = {};
-  if (presses) object.press = {pinch, errand.press, errand.press - resistance, object.pinch.other};
+  if (presses) object.press = {pinch, goal.press, goal.press - resistance, object.pinch.other};
   const double back = std::clamp(object.pinch.lack / 2, -most, most);
   return stands ? Vec3d(step - pinch * (into - advance + std::max(back, -into))) : step;
 }
@@ -138,14 +138,14 @@ void begin_tick(ColliderState& object) {
 
 /// Sends an object on its way within its speeds and at its pace.
 /// @param left  of the step to its goal [m]
-void head_for(const Errand& errand, const Vec3d& left, double seconds, ColliderState& object) {
-  const Vec3d step = errand.goal.position - object.pose.position;
-  const Vec3d turn = rotation_vector(errand.goal.rotation * object.pose.rotation.conjugate());
+void head_for(const MotionGoal& goal, const Vec3d& left, double seconds, ColliderState& object) {
+  const Vec3d step = goal.pose.position - object.pose.position;
+  const Vec3d turn = rotation_vector(goal.pose.rotation * object.pose.rotation.conjugate());
   // Translation and rotation of a command take the same time, so that the path does not depend on
   // the tick.
   const auto fraction_of = [&](const Vec3d& part) {
-    return std::min(allowed_fraction(part.norm(), errand.speed * seconds),
-                    allowed_fraction(turn.norm(), errand.turn_speed * seconds));
+    return std::min(allowed_fraction(part.norm(), goal.speed * seconds),
+                    allowed_fraction(turn.norm(), goal.turn_speed * seconds));
   };
   const double all = fraction_of(step);
   object.wanted = {step * (all / seconds), turn * (all / seconds)};
@@ -155,7 +155,7 @@ void head_for(const Errand& errand, const Vec3d& left, double seconds, ColliderS
   const bool arrives = fraction == 1 && object.pace.is_full();
   object.twist =
       slowed({way * (fraction / seconds), turn * (fraction / seconds)}, seconds, object.pace);
-  object.goal = arrives ? errand.goal : moved(object.pose, object.twist, seconds);
+  object.goal = arrives ? goal.pose : moved(object.pose, object.twist, seconds);
   if (arrives && way != step) object.goal.position = object.pose.position + way;
 }
 
@@ -170,21 +170,21 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
     if (state.is_jaw()) continue;
     state.forced = state.move ? state.move->force : colliders[k].force;
     const ColliderPair own = {static_cast<Index>(k), kNone};
-    plan_object(errand_of(colliders[k], time + seconds, state), own, seconds, states, state);
+    plan_object(goal_of(colliders[k], time + seconds, state), own, seconds, states, state);
     state.blocked = state.press.acts();
   }
 }
 
-void plan_object(const std::optional<Errand>& errand, const ColliderPair& own, double seconds,
+void plan_object(const std::optional<MotionGoal>& goal, const ColliderPair& own, double seconds,
                  const ColliderStates& states, ColliderState& object) {
   assert(std::min(object.pace.into, object.pace.along) >= -1);
   assert(std::max(object.pace.into, object.pace.along) <= 1);
-  const Errand stay{object.pose, 0, 0, object.max_force, 0};
-  const Vec3d left = step_along_pinch(errand.value_or(stay), own, seconds, states, object);
+  const MotionGoal stay{object.pose, 0, 0, object.max_force, 0};
+  const Vec3d left = step_along_pinch(goal.value_or(stay), own, seconds, states, object);
   object.bracing = object.pinch.braces;
   object.pinch = {};
   begin_tick(object);
-  if (errand) head_for(*errand, left, seconds, object);
+  if (goal) head_for(*goal, left, seconds, object);
 }
 
 void plan_carried(const Pose& goal, double seconds, ColliderState& object) {

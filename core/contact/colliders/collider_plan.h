@@ -10,8 +10,8 @@
 namespace weft {
 
 /// Where an object is sent in a tick.
-struct Errand {
-  Pose goal;
+struct MotionGoal {
+  Pose pose;
   double speed = 0;       ///< limit of its pivot [m/s]
   double turn_speed = 0;  ///< limit [rad/s]
   double press = 0;       ///< force with which it presses a layer in its way on another object [N]
@@ -30,11 +30,11 @@ void plan_motion(const std::vector<ColliderDef>& colliders, double time, double 
                  ColliderStates& states);
 
 /// Plans the coming tick of one object.
-/// @param errand   none: it stays
+/// @param goal     none: it stays
 /// @param own      its colliders
 /// @param seconds  length of the tick, and of the last one, whose impulses the object still has
 /// @param states   of all colliders, for those that press against it
-void plan_object(const std::optional<Errand>& errand, const ColliderPair& own, double seconds,
+void plan_object(const std::optional<MotionGoal>& goal, const ColliderPair& own, double seconds,
                  const ColliderStates& states, ColliderState& object);
 
 /// The same for one that goes to a pose whatever resists it, but for the limits of all objects.
