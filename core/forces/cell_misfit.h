@@ -22,9 +22,9 @@
 //
 // least is where all pull alike, K e = -lambda c (1 + e) with elongations e, so that the slope is
 // lambda, with w = sum c (1 - (1 + lambda c/K)^-2)/2. In a fold of radius R at 45 degrees that is
-// h^4/(256 R^2 B (1/G + ...)) times the energy of bending, 3 times in a silk fold of its bending
-// length with cells of 7.5 mm. It is subtracted, so that folds have the energy of their bending
-// alone in all directions:
+// h^4/(256 R^2 B (1/G + ...)) times the energy of bending, 3 times in a fold of silk of
+// 6.5e-7 N m whose radius is its bending length, with cells of 7.5 mm. It is subtracted, so that
+// folds have the energy of their bending alone in all directions:
 //
 //     U = -E f^2 integral of p dw,  f = 1 - (w/w_1)^4 up to w_1 = 0.8, and 0 beyond.
 //

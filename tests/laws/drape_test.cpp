@@ -87,19 +87,14 @@ TEST_CASE(
   CHECK(mean.coefficient < high + 5);
 }
 
-TEST_CASE("a stiffer bending droops less and in fewer folds; where it rules, it drapes less") {
-  // The coefficient of a light fabric that hardly shears goes with its folds more than with its
-  // bending length; that of one which shears follows it. Among starts the coefficient differs by
-  // 0.5 to 0.9 points (standard deviation).
-  const auto [name, rules] = GENERATE(table<std::string, bool>({{"nylon", false}, {"silk", true}}));
+TEST_CASE("a stiffer bending droops less, in fewer folds, and drapes less") {
+  // Among starts the coefficient differs by 0.5 to 0.9 points (standard deviation).
+  const std::string name = GENERATE("nylon", "silk");
   const Drape soft = mean_drape(name, 0.25), measured = mean_drape(name, 1),
               stiff = mean_drape(name, 4);
   CHECK(soft.droop > measured.droop);
   CHECK(measured.droop > stiff.droop);
   CHECK(soft.folds > stiff.folds);
-  if (!rules) return;
-  CHECK(soft.folds > measured.folds);
-  CHECK(measured.folds > stiff.folds);
   CHECK(soft.coefficient < measured.coefficient - 2);
   CHECK(measured.coefficient < stiff.coefficient - 2);
   CHECK(soft.coefficient < stiff.coefficient - 10);
