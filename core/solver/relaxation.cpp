@@ -29,6 +29,7 @@ struct Tick {
 
   bool has_external_forces() const { return surroundings.air || !idle(grabs); }
   bool compliant() const { return solver.compliance > 0; }
+  int sweeps() const { return sweeps_taken(solver); }
 };
 
 /// Whether a part is swept row by row.
@@ -183,21 +184,18 @@ void sweep_membrane(Tick<Real>& tick, const ClothPart<Real>& part, bool down) {
   }
 }
 
-/// All sweeps of a substep over the springs of one part that is not swept row by row. Without
-/// compliance they follow the seed and restart in each substep; with it, `turn` counts the sweeps
-/// of the tick.
+/// All sweeps of a substep over the springs of one part that is not swept row by row.
 template <class Real>
-void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
+void relax_part(Tick<Real>& tick, const IndexRange& springs) {
   const auto first = static_cast<std::size_t>(springs.first);
   const auto count = static_cast<std::size_t>(springs.count);
   assert(first + count <= tick.model.springs.size());
   if (count == 0) return;
-  for (int s = 0; s < tick.solver.sweeps; ++s) {
+  for (int s = 0; s < tick.sweeps(); ++s) {
     stop_point();
-    const bool compliant = tick.compliant(), down = (compliant ? turn + s : s) % 2 == 0;
-    const std::size_t begin = down ? first : first + count - 1;
-    const std::ptrdiff_t step = down ? 1 : -1;
-    if (compliant)
+    const std::size_t begin = runs_forwards(s) ? first : first + count - 1;
+    const std::ptrdiff_t step = runs_forwards(s) ? 1 : -1;
+    if (tick.compliant())
       sweep_compliant(tick, begin, count, step);
     else
       sweep_rigid(tick, begin, count, step);
@@ -205,39 +203,37 @@ void relax_part(Tick<Real>& tick, const IndexRange& springs, int turn) {
 }
 
 template <class Real>
-void sweep_rows(const SweepView<Real>& grid, int sweeps, int turn) {
-  assert(sweeps >= 1 && turn >= 0);
+void sweep_rows(const SweepView<Real>& grid, int sweeps) {
+  assert(sweeps >= 1);
   for (int s = 0; s < sweeps; ++s) {
     stop_point();
-    sweep_grid(grid, (turn + s) % 2 == 0, s == 0, s + 1 == sweeps);
+    sweep_grid(grid, runs_forwards(s), s == 0, s + 1 == sweeps);
   }
 }
 
-/// @param substep  counted from 0
 template <class Real>
-void relax(Tick<Real>& tick, int substep) {
-  const auto sweeps = static_cast<std::size_t>(tick.solver.sweeps);
+void relax(Tick<Real>& tick) {
+  const auto sweeps = static_cast<std::size_t>(tick.sweeps());
   const std::size_t elements = tick.model.springs.size() + tick.model.membrane.size();
   const StageTimer timer(tick.profile, Stage::relaxation, elements * sweeps);
-  const int turn = substep * tick.solver.sweeps;
   std::fill(tick.work.multiplier.begin(), tick.work.multiplier.end(), Real(0));
   std::fill(tick.work.membrane_multiplier.begin(), tick.work.membrane_multiplier.end(),
             Vec3<Real>::Zero());
   if (!tick.compliant()) {
-    relax_part(tick, {0, static_cast<Index>(tick.model.springs.size())}, turn);
+    relax_part(tick, {0, static_cast<Index>(tick.model.springs.size())});
     return;
   }
   for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
     GridRelaxation<Real>& grid = tick.work.grids[p];
     if (in_rows(tick, p)) {
-      sweep_rows(grid.view(), tick.solver.sweeps, turn);
+      sweep_rows(grid.view(), tick.sweeps());
       grid.store_displacements(tick.work.wanted);
     } else {
       const ClothPart<Real>& part = tick.model.parts[p];
-      relax_part(tick, part.springs, turn);
-      for (int s = 0; part.membrane.count > 0 && s < tick.solver.sweeps; ++s) {
+      relax_part(tick, part.springs);
+      for (int s = 0; part.membrane.count > 0 && s < tick.sweeps(); ++s) {
         stop_point();
-        sweep_membrane(tick, part, (turn + s) % 2 == 0);
+        sweep_membrane(tick, part, runs_forwards(s));
       }
     }
   }
@@ -290,7 +286,7 @@ bool rows_alone(const Tick<Real>& tick) {
 template <class Real>
 void advance_rows(Tick<Real>& tick, int substeps) {
   const auto times = static_cast<std::size_t>(substeps);
-  const auto sweeps = static_cast<std::size_t>(tick.solver.sweeps);
+  const auto sweeps = static_cast<std::size_t>(tick.sweeps());
   std::size_t stencils = 0;
   for (const ClothPart<Real>& part : tick.model.parts) stencils += quadratic_stencil_count(part);
   tick.profile[Stage::bending].work += stencils * times;  // their time is part of integration
@@ -306,7 +302,7 @@ void advance_rows(Tick<Real>& tick, int substeps) {
       }
       {
         const StageTimer timer(tick.profile, Stage::relaxation, 0);
-        sweep_rows(grid.view(), tick.solver.sweeps, s * tick.solver.sweeps);
+        sweep_rows(grid.view(), tick.sweeps());
       }
       const StageTimer timer(tick.profile, Stage::integration, 0);
       move_grid(grid.view());
@@ -372,7 +368,7 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
     if (collision.meter) collision.meter->begin(state);
     evaluate_forces<Real>(tick, {static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt});
     predict(tick);
-    relax(tick, s);
+    relax(tick);
     result.blow_up = move(tick);
     if (result.blow_up) return result;
     note_resistance(state.v, grabs);

@@ -14,6 +14,7 @@
 #include "core/solver/constants.h"
 #include "core/solver/grid_relaxation.h"
 #include "core/solver/membrane_relaxation.h"
+#include "core/solver/relaxation.h"
 #include "core/stop_signal.h"
 
 namespace weft {
@@ -38,13 +39,13 @@ std::vector<double> held_masses(const ClothModel<double>& model, const std::vect
 /// Sweeps of a grid, and the multiplier of each spring after them.
 std::vector<double> swept_rows(const ClothModel<double>& model, const Vec3Array<double>& x,
                                const std::vector<double>& inverse_mass, const SweptSubstep& substep,
-                               bool down, GridRelaxation<double>& rows) {
+                               GridRelaxation<double>& rows) {
   rows.set_masses(inverse_mass, substep.softness);
   rows.load(x, Vec3Array<double>(x.size(), Vec3d::Zero()), 1);
   const SweepView<double>& view = rows.view();
   for (int s = 0; s < substep.sweeps; ++s) {
     stop_point();
-    sweep_grid(view, (s % 2 == 0) == down, s == 0, false);
+    sweep_grid(view, runs_forwards(s), s == 0, false);
   }
   std::vector<double> multipliers;
   for (std::size_t k = 0; k < model.springs.size(); ++k) {
@@ -63,15 +64,14 @@ std::vector<double> swept_rows(const ClothModel<double>& model, const Vec3Array<
 
 /// The same spring by spring.
 std::vector<double> swept_springs(const ClothModel<double>& model, const Vec3Array<double>& x,
-                                  const std::vector<double>& w, const SweptSubstep& substep,
-                                  bool down) {
+                                  const std::vector<double>& w, const SweptSubstep& substep) {
   const std::size_t count = model.springs.size();
   std::vector<double> multipliers(count, 0);
   Vec3Array<double> moved = x;
   for (int s = 0; s < substep.sweeps; ++s) {
     stop_point();
     for (std::size_t n = 0; n < count; ++n) {
-      const std::size_t k = (s % 2 == 0) == down ? n : count - 1 - n;
+      const std::size_t k = runs_forwards(s) ? n : count - 1 - n;
       const Spring<double>& spring = model.springs[k];
       const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
       if (w[i] + w[j] == 0 || !(spring.stiffness > 0)) continue;
@@ -123,14 +123,11 @@ Vec3d mean_stress(const ClothModel<double>& model, const std::vector<double>& fo
   return sum / (part.cell_u * part.cell_v * kProbedCells * kProbedCells);
 }
 
-/// The mean of both directions, by unit strains.
+/// By unit strains.
 template <class Stress>
 SweptTensor tensor_of(const SweptSubstep& substep, const Stress& stress) {
   SweptTensor tensor = SweptTensor::Zero();
-  for (int k = 0; k < 3; ++k) {
-    for (const bool down : {true, false})
-      tensor.col(k) += 0.5 * stress(kProbedStrain * Vec3d::Unit(k), down);
-  }
+  for (int k = 0; k < 3; ++k) tensor.col(k) = stress(kProbedStrain * Vec3d::Unit(k));
   return tensor * (substep.softness / kProbedStrain);
 }
 
@@ -155,14 +152,13 @@ std::vector<int> rings_of(const ClothModel<double>& model) {
 
 /// Multipliers of a mesh's triangles after the sweeps.
 Vec3Array<double> swept_triangles(const ClothModel<double>& model, const Vec3Array<double>& x,
-                                  const std::vector<double>& w, const SweptSubstep& substep,
-                                  bool down) {
+                                  const std::vector<double>& w, const SweptSubstep& substep) {
   const std::size_t count = model.membrane.size();
   Vec3Array<double> multipliers(count, Vec3d::Zero()), place = x;
   for (int s = 0; s < substep.sweeps; ++s) {
     stop_point();
     for (std::size_t n = 0; n < count; ++n) {
-      const std::size_t k = (s % 2 == 0) == down ? n : count - 1 - n;
+      const std::size_t k = runs_forwards(s) ? n : count - 1 - n;
       const MembraneTriangle<double>& t = model.membrane[k];
       const auto at = [&](std::size_t c) { return static_cast<std::size_t>(t.x[c]); };
       const std::array<double, 3> own = {w[at(0)], w[at(1)], w[at(2)]};
@@ -190,10 +186,10 @@ SweptTensor swept_tensor_of_grid(const ClothModel<double>& model, const SweptSub
   const std::vector<double> inverse_mass = held_masses(model, held);
   GridRelaxation<double> rows;
   rows.prepare(part);
-  return tensor_of(substep, [&](const Vec3d& strain, bool down) {
+  return tensor_of(substep, [&](const Vec3d& strain) {
     const Vec3Array<double> x = strained(model, strain);
-    return mean_stress(model, rows.fits() ? swept_rows(model, x, inverse_mass, substep, down, rows)
-                                          : swept_springs(model, x, inverse_mass, substep, down));
+    return mean_stress(model, rows.fits() ? swept_rows(model, x, inverse_mass, substep, rows)
+                                          : swept_springs(model, x, inverse_mass, substep));
   });
 }
 
@@ -206,9 +202,9 @@ SweptTensor swept_tensor_of_mesh(const ClothModel<double>& model, const SweptSub
   const int inside = std::min(kMostRings, deepest) - 1;
   if (inside < 1) return SweptTensor::Zero();
   const std::vector<double> inverse_mass = held_masses(model, held);
-  return tensor_of(substep, [&](const Vec3d& strain, bool down) {
+  return tensor_of(substep, [&](const Vec3d& strain) {
     const Vec3Array<double> multipliers =
-        swept_triangles(model, strained(model, strain), inverse_mass, substep, down);
+        swept_triangles(model, strained(model, strain), inverse_mass, substep);
     Vec3d sum = Vec3d::Zero();
     double area = 0;
     for (std::size_t k = 0; k < multipliers.size(); ++k) {

@@ -13,8 +13,7 @@ struct SweptSubstep {
   int sweeps = 1;
 };
 
-/// Stresses by strains, of a cloth under XPBD [N/m]: both stretches and shear, in this order. The
-/// sweeps begin in either direction in turn; the tensor is the mean of both.
+/// Stresses by strains, of a cloth under XPBD [N/m]: both stretches and shear, in this order.
 using SweptTensor = Eigen::Matrix3d;
 
 /// Of a whole grid whose cells are alike, in its middle.

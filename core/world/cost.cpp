@@ -48,7 +48,7 @@ double sweeps_of(const WorldDef& def, SolverKind kind) {
   assert(kind != SolverKind::automatic && "solver_of tells which");
   switch (kind) {
     case SolverKind::relaxation:
-      return def.relaxation.sweeps;
+      return sweeps_taken(def.relaxation);
     case SolverKind::implicit:
       return def.implicit.iterations * kSweepsOfNewton;
     default:

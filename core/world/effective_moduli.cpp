@@ -72,8 +72,8 @@ struct Probe {
 
   /// Work of computing the moduli once, in springs relaxed.
   double work() const {
-    // Three strains, in two directions.
-    const double relaxed = 6.0 * sweeps * static_cast<double>(membrane_elements(model.parts[0]));
+    // Three strains.
+    const double relaxed = 3.0 * sweeps * static_cast<double>(membrane_elements(model.parts[0]));
     return model.membrane.empty() ? relaxed : kSpringsOfTriangle * relaxed;
   }
 
@@ -167,10 +167,10 @@ std::vector<EffectiveModuli> effective_moduli(const World<Real>& world) {
     if (membrane_elements(world.model().parts[k]) == 0) continue;
     EffectiveModuli moduli;
     moduli.substeps = substeps;
-    moduli.sweeps = def.relaxation.sweeps;
+    moduli.sweeps = sweeps_taken(def.relaxation);
     if (auto model = probe_of(cloths[k])) {
       const Probe probe{std::move(*model), tensor_of(cloths[k].fabric), def.relaxation.compliance,
-                        world.tick_seconds(), def.relaxation.sweeps};
+                        world.tick_seconds(), sweeps_taken(def.relaxation)};
       const bool flat = probe.model.membrane.empty() || is_flat_in_uv(probe.model);
       if (flat && probe.work() <= kMostProbedSprings) {
         moduli = probe.with(substeps);

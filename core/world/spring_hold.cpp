@@ -50,7 +50,7 @@ std::vector<SlackSprings> slack_springs(const World<Real>& world) {
     const double h = spacing_of(world.model(), part);
     SlackSprings slack;
     slack.substeps = substeps;
-    slack.sweeps = def.relaxation.sweeps;
+    slack.sweeps = sweeps_taken(def.relaxation);
     const bool one_sided = def.relaxation.compliance == 0 && slack.sweeps == 1;
     slack.needed_sweeps = one_sided ? 2 : slack.sweeps;
     slack.strain =

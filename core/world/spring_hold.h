@@ -24,14 +24,13 @@ struct SlackSprings {
 /// Strain of a hanging net of `rows` springs of length `h` [m] under relaxation, in excess of that
 /// of its fabric. Each substep adds g dt^2 to every particle, and a sweep passes on about a third
 /// of the difference between neighbours: the top keeps 3 rows g dt^2 / (h sweeps), within a factor
-/// of 2 up to kMostHangingStrain (measured with 25 to 97 rows). Beyond it the net also begins to
-/// bounce, ever higher.
+/// of 2 up to kMostHangingStrain (measured with 25 to 65 rows).
 /// @param dt  substep [s]
 double strain_of_hanging(double rows, double h, double gravity, double dt, int sweeps);
 
 /// The cloths of a world at its start that relaxation cannot hold in contact of cloth with cloth;
 /// none with another solver or without such contact. Rigid springs that are swept only once per
-/// substep, always from the same end, are not held by any number of substeps.
+/// substep are not held by any number of substeps.
 template <class Real>
 std::vector<SlackSprings> slack_springs(const World<Real>& world);
 

@@ -71,7 +71,7 @@ void pin_ends(World<double>& world, int columns_each) {
   }
 }
 
-/// XPBD with one sweep a substep.
+/// XPBD with as few sweeps as it takes.
 void use_xpbd(WorldDef& def, int substeps) {
   def.cloths[0].fabric.damping_ratio = 0;
   def.solver.kind = SolverKind::relaxation;

@@ -57,8 +57,7 @@ struct Shape {
   double speed = 0;  ///< of who moves most over a tick [m/s]
 };
 
-/// Mean over a tick. The velocity within one says little with XPBD: its sweeps run down and up in
-/// turn, and a strip at rest moves to and fro with them, back where it was after two substeps.
+/// Mean over a tick: the velocity at its end also has what rounding took.
 template <class Real>
 double speed_over_a_tick(World<Real>& world, double tick_rate) {
   const Vec3Array<Real> before = world.state().x;
