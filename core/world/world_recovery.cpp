@@ -65,6 +65,16 @@ void take_back_hands(const Grabs<Real>& before, Grabs<Real>& grabs) {
   }
 }
 
+/// Substeps of a tick that follows one after which the cloth was stopped: twice as many as that
+/// could not be computed with, as long as a tick may have so many. With its usual number it would
+/// fail like that one, for it begins in the same state, and the cloth would never move again.
+int after_stop(const std::optional<Divergence>& last, std::size_t particles, int usual) {
+  if (!last || last->remedy != DivergenceRemedy::stopped_cloth) return usual;
+  const int more = 2 * last->substeps;
+  return is_beyond_verlet(particles, more) ? std::max(usual, last->substeps)
+                                           : std::max(usual, more);
+}
+
 }  // namespace
 
 std::string describe(const Divergence& d) {
@@ -131,14 +141,19 @@ template <class Real>
 void World<Real>::advance_or_recover(int substeps) {
   assert(substeps >= 1);
   SolverKind kind = solver_of(def_);
+  const std::optional<Divergence>& before = checkpoint_.report.divergence;
+  const std::size_t count = model_.mass.size();
   int without_loss = 0;
-  if (kind == SolverKind::implicit) {
+  if (kind != SolverKind::implicit) {
+    substeps = after_stop(before, count, substeps);
+  } else {
     without_loss = choose_substeps(SolverKind::verlet);
     const bool driven = pins_.any_moving();
     // Refined runs give the same ticks to verlet, so that they differ by their steps alone.
     solvers_.implicit.refuses =
-        !is_beyond_verlet(model_.mass.size(), (without_loss + refinement_ - 1) / refinement_);
+        !is_beyond_verlet(count, (without_loss + refinement_ - 1) / refinement_);
     solvers_.implicit.status = ImplicitStatus::done;
+    if (solvers_.implicit.refuses) without_loss = after_stop(before, count, without_loss);
     if ((solvers_.touching || driven) && solvers_.implicit.refuses) {
       solvers_.implicit.status = driven ? ImplicitStatus::driven : ImplicitStatus::touching;
       kind = SolverKind::verlet;
@@ -192,7 +207,12 @@ void World<Real>::advance_or_recover(int substeps) {
       bring_to_rest(pins_);
       accept_state();
       hold_present_state();
-      if (energy_) energy_->book_loss(report_.energies, energy_->balance.recovery);
+      if (energy_) {
+        // The state that it went back to has what disturbances brought before the tick.
+        energy_->balance.disturbances += report_.brought;
+        energy_->balance.recovery += report_.brought;
+        energy_->book_loss(report_.energies, energy_->balance.recovery);
+      }
       return;
     }
     report_.divergence->remedy = DivergenceRemedy::more_substeps;

@@ -3,6 +3,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/cloth/fabric_presets.h"
 #include "tests/support/worlds.h"
 
 // What is left of a tick that was taken back.
@@ -90,4 +91,41 @@ TEST_CASE("after a tick that was taken back the work of a moving pin is what the
     REQUIRE(world.report().work > 0);
     CHECK(world.report().energies.total() - before == Approx(world.report().work).epsilon(0.02));
   }
+}
+
+TEST_CASE("cloth that was stopped is stepped more finely from tick to tick until it moves again") {
+  // Gathered into a ball five times its size it has a million times its usual energy, and the air
+  // damps it faster than any number of substeps that its shape at rest asks for.
+  ClothDef cloth = test::flat_cloth(8, 8, 0.1, 0.1);
+  cloth.fabric = make_fabric("silk");
+  WorldDef def = test::empty_world(cloth);
+  def.solver.kind = GENERATE(SolverKind::verlet, SolverKind::implicit);
+  def.tick_rate = 30;
+  def.environment.air_density = 1.2;
+  def.environment.still_air = true;
+  DisturbanceDef gathering;
+  gathering.time = 2.0 / 30;
+  gathering.gather = 0.5;
+  def.disturbances = {gathering};
+  World<float> world(def);
+  world.measure_energy(true);
+  int stopped = 0, failed_before = 0;
+  double given = 0;
+  for (int tick = 0; tick < 30; ++tick) {
+    const TickReport& report = world.step();
+    if (tick == 2) given = report.brought;
+    const bool stops =
+        report.divergence && report.divergence->remedy == DivergenceRemedy::stopped_cloth;
+    if (stops) {
+      CHECK(report.divergence->substeps > failed_before);
+      failed_before = report.divergence->substeps;
+    }
+    stopped += stops ? 1 : 0;
+  }
+  REQUIRE(given > 1000);
+  CHECK(stopped > 0);
+  CHECK(stopped < 5);
+  CHECK(world.report().energies.kinetic > 0);
+  CHECK(world.report().energies.stretch < given / 1000);
+  CHECK(world.energy_balance()->disturbances == Approx(given).epsilon(1e-6));
 }
