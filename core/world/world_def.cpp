@@ -44,8 +44,8 @@ std::string hint_for(const std::string& key, const std::vector<std::string>& key
   return meant.empty() ? "" : "did you mean " + meant + "?";
 }
 
-/// Throws DefinitionError if a key names a list without keys, or a cloth that is not there: a list
-/// of all the keys that there are would hide the reason.
+/// Throws DefinitionError if a key names part of a list, a mesh, a look or a preset, which have no
+/// keys, or a cloth that is not there: a list of all the keys that there are would hide the reason.
 void refuse_place(const WorldDef& def, const std::string& key) {
   for (const char* list :
        {"colliders", "pins", "grippers", "hands", "insults", "winds", "fans", "environment.fans"}) {
@@ -56,6 +56,13 @@ void refuse_place(const WorldDef& def, const std::string& key) {
   if (key.find("mesh.") != std::string::npos)
     throw DefinitionError("key", key, "none of a mesh",
                           "it is shaped and placed in the scene's own text alone");
+  if (key.starts_with("look") || key.find(".look") != std::string::npos)
+    throw DefinitionError("key", key, "none of a look",
+                          "how a cloth looks is told in the scene's own text alone");
+  if (const std::string preset = ".preset"; key.ends_with("fabric" + preset)) {
+    const std::string whole = key.substr(0, key.size() - preset.size());
+    throw DefinitionError("key", key, whole, "a preset is set as a whole: " + whole + "=silk");
+  }
   if (!key.starts_with("cloths")) return;
   const std::string count = std::to_string(def.cloths.size());
   std::string all;

@@ -182,9 +182,8 @@ std::string describe_mismatch(const CLI::App& command, const std::string& wrong)
       return name + " takes no value";
     }
     if (!wrong.starts_with(name + ":") && !wrong.starts_with(name + " ")) continue;
-    const bool repeated = option->count() > 1;
-    return name + (repeated ? " is given twice" : " has no value") +
-           "; allowed: " + option->get_description();
+    if (option->count() > 1) return name + " is given twice; allowed: once";
+    return name + " has no value; allowed: " + option->get_description();
   }
   return wrong;
 }

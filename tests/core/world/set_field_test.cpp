@@ -89,4 +89,18 @@ TEST_CASE("a key of a list that has none is told where it is set, and no other k
         "it is shaped and placed in the scene's own text alone");
 }
 
+TEST_CASE("a key of a look or a preset is told where it is set, and no other key") {
+  for (const std::string key : {"look.color", "cloths[0].look.color", "cloths[1].look"}) {
+    const DefinitionError refused = refusal_of(grid_and_mesh(), key, "#ff0000");
+    CHECK(refused.limit == "none of a look");
+    CHECK(refused.hint == "how a cloth looks is told in the scene's own text alone");
+  }
+  for (const std::string whole : {"fabric", "cloths[1].fabric"}) {
+    const DefinitionError refused = refusal_of(grid_and_mesh(), whole + ".preset", "silk");
+    CHECK(refused.limit == whole);
+    CHECK(refused.hint == "a preset is set as a whole: " + whole + "=silk");
+    CHECK(refusal_of(grid_and_mesh(), whole, "silk").field == "none");
+  }
+}
+
 }  // namespace weft
