@@ -45,6 +45,7 @@ bool measure_tick(World<Real>& world, WorkLimit& limit, Measurement<Real>& m) {
     m.stages.stages[i].work += report.profile.stages[i].work;
   }
   m.divergences += report.divergence ? 1 : 0;
+  m.stopped += was_stopped(report) ? 1 : 0;
   m.damped_substeps += report.damped_substeps;
   m.least_substeps =
       m.least_substeps == 0 ? report.substeps : std::min(m.least_substeps, report.substeps);

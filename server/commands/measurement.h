@@ -22,6 +22,7 @@ struct Measurement {
   double deepest = 0;         ///< [m]
   int checks = 0;             ///< ticks checked for penetrations and crossings
   int divergences = 0;
+  int stopped = 0;          ///< those after which the cloth went back and was stopped
   int damped_substeps = 0;  ///< that `implicit` repeated by backward Euler
   int least_substeps = 0, most_substeps = 0;
   double largest_strain = 0;  ///< over the whole run
@@ -36,6 +37,11 @@ struct Measurement {
   proto::Guarantee guarantee;     ///< at the end
   bool halted = false;            ///< the tick after these was given up
 };
+
+/// Whether the cloth went back to its last good state in a tick and was stopped.
+inline bool was_stopped(const TickReport& tick) {
+  return tick.divergence && tick.divergence->remedy == DivergenceRemedy::stopped_cloth;
+}
 
 /// Steps the world and measures that.
 /// @returns false if the tick exceeded its limit; the state is then unchanged

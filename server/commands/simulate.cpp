@@ -52,6 +52,16 @@ bool is_led_out(const GuaranteeWatch<Real>& promise, const World<Real>& world) {
   return promise.guarantee(world).state == proto::GuaranteeState::bad_start;
 }
 
+/// Whether the scene put particles elsewhere just before the last tick, through whatever is there.
+template <class Real>
+bool was_gathered(const World<Real>& world) {
+  const WorldDef& def = world.def();
+  return std::any_of(def.disturbances.begin(), def.disturbances.end(), [&](const auto& d) {
+    return d.gather > 0 &&
+           std::llround(d.time * def.tick_rate) + 1 == static_cast<long long>(world.tick());
+  });
+}
+
 /// A tick that is given up ends it, and the series is then not written.
 /// @param error  repetitions that go along with it; null: none
 template <class Real>
@@ -76,9 +86,11 @@ Measurement<Real> run(World<Real>& world, const SimulateOptions& options, ErrorO
     if (series) series->note_tick(world);
     if (error) error->step();
     if (judged) m.verdict.look(world);
+    led_out = led_out || was_gathered(world);
     if (i % options.check_every == 0 || i == options.ticks)
       look(world, judged, led_out, counter, m);
-    led_out = led_out && is_led_out(promise, world);
+    // A tick that was taken back has led nothing out.
+    led_out = led_out && (was_stopped(world.report()) || is_led_out(promise, world));
   }
   if (m.halted && done % options.check_every != 0) look(world, judged, led_out, counter, m);
   if (series && !m.halted) series->finish();
@@ -219,11 +231,24 @@ int warn_of_crossings(const Measurement<Real>& m) {
                "weft: %zu crossings of cloth with cloth and %zu with objects in %d of %d ticks, "
                "from tick %d on%s\n",
                m.cloth_crossings, m.object_crossings, m.crossed_ticks, m.checks, m.first_crossed,
-               m.broken_promises > 0  ? ""
-               : m.while_led_out > 0  ? ", of cloth that started there and was led out"
+               m.broken_promises > 0 ? ""
+               : m.while_led_out > 0
+                   ? ", of cloth that started or was gathered there and was led out"
                : m.late_crossings > 0 ? ", about which its contact promises nothing"
                                       : ", none after the scene's grace time");
   return m.broken_promises > 0 ? kCrossed : 0;
+}
+
+/// Reports on standard error ticks in which the cloth stood still because they could not be
+/// computed.
+template <class Real>
+void warn_of_stops(const Measurement<Real>& m) {
+  if (m.stopped == 0) return;
+  std::fprintf(
+      stderr,
+      "weft: in %d of %zu ticks the cloth went back to its last good state and was stopped, "
+      "as no number of substeps that was tried could compute them\n",
+      m.stopped, m.ticks.size());
 }
 
 /// Reports a tick that was given up, and what was found in those before it.
@@ -235,6 +260,7 @@ int tell_halt(const SimulateOptions& options, const World<Real>& world,
                "fewer particles or substeps, or raise --tick-limit\n",
                static_cast<unsigned long long>(world.tick() + 1), options.scene.c_str(),
                options.tick_limit);
+  warn_of_stops(m);
   warn_of_crossings(m);
   if (m.guarantee.reasons.empty()) return kHalted;
   std::string told = proto::name_of(m.guarantee.state);
@@ -319,6 +345,7 @@ int simulate_in(const SimulateOptions& options) {
   if (!options.out.empty())
     write_file(options.out,
                encode_meshes(cloth_meshes(world.model(), world.state().x), options.out));
+  warn_of_stops(measurement);
   return warn_of_crossings(measurement);
 }
 

@@ -241,7 +241,19 @@ class CommandLine(unittest.TestCase):
         told = json.loads(out.stdout)
         self.assertEqual((out.returncode, told["guarantee"]["state"]), (0, "held"))
         self.assertEqual(told["crossings"]["while_led_out"], told["crossings"]["cloth_with_cloth"])
-        self.assertIn("of cloth that started there and was led out", out.stderr)
+        self.assertIn("of cloth that started or was gathered there and was led out", out.stderr)
+        # So is cloth that the scene itself puts through itself.
+        gathered = {"cloths": [{"rows": 5, "columns": 5, "width": 1.2, "height": 1.2, "fabric": {"preset": "silk"}}],
+                    "insults": [{"time": 0.05, "gather": 0.001}]}
+        with tempfile.TemporaryDirectory() as folder:
+            scene = os.path.join(folder, "gathered.json")
+            with open(scene, "w", encoding="utf-8") as file:
+                json.dump(gathered, file)
+            out = run("simulate", "--scene", scene, "--ticks", "120", "--json")
+        told = json.loads(out.stdout)
+        self.assertEqual((out.returncode, told["guarantee"]["state"]), (0, "held"))
+        self.assertGreater(told["crossings"]["while_led_out"], 0)
+        self.assertEqual(told["crossings"]["while_led_out"], told["crossings"]["cloth_with_cloth"])
         free = run(*fold, "--set", "verdict.clear_after=0", "--set", "contact.self=none")
         self.assertEqual(free.returncode, 0)
         self.assertIn("about which its contact promises nothing", free.stderr)
