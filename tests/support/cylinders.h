@@ -30,6 +30,28 @@ inline TriangleMesh rolled(double radius, double angle, Index columns, Index row
   return mesh;
 }
 
+/// A tube, open at both ends, whose radius goes from `low` at its bottom to `high` at its top.
+inline TriangleMesh tube(double low, double high, Index facets, Index rings, double from,
+                         double to) {
+  TriangleMesh mesh;
+  for (Index r = 0; r < rings; ++r) {
+    const double up = static_cast<double>(r) / (rings - 1), radius = low + (high - low) * up;
+    for (Index c = 0; c < facets; ++c) {
+      const double turn = 2 * std::numbers::pi * c / facets;
+      mesh.positions.emplace_back(radius * std::cos(turn), from + (to - from) * up,
+                                  radius * std::sin(turn));
+    }
+  }
+  for (Index r = 0; r + 1 < rings; ++r) {
+    for (Index c = 0; c < facets; ++c) {
+      const Index a = r * facets + c, b = r * facets + (c + 1) % facets;
+      mesh.triangles.push_back({a, a + facets, b + facets});
+      mesh.triangles.push_back({a, b + facets, b});
+    }
+  }
+  return mesh;
+}
+
 /// A closed cylinder that stands on the plane y = 0.
 inline TriangleMesh closed_cylinder(double radius, double height, Index facets, Index rings) {
   TriangleMesh mesh;

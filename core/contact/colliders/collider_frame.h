@@ -48,6 +48,9 @@ struct ColliderFrame {
   Vec3<Real> world_direction(const Vec3<Real>& d) const {
     return displaced ? (rotation * d).eval() : d;
   }
+  Vec3<Real> own_direction(const Vec3<Real>& d) const {
+    return displaced ? (rotation.transpose() * d).eval() : d;
+  }
   /// Mean velocity of a point of the object over the coming substep [m/s].
   Vec3<Real> velocity_at(const Vec3<Real>& p) const { return velocity + spin * (p - centre); }
   /// Present position of a point of the object that is at p after the substep.

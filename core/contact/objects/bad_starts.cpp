@@ -112,6 +112,7 @@ void add_inside(const ObjectRowSource<Real>& source, Index i, const Vec3<Real>& 
   assert(distance < 0);
   const Index cloth = cloth_of(source.cloths, i);
   const Vec3<Real>& x = source.state.x[at_index(i)];
+  const ColliderFrame<Real>& frame = source.shapes.frames[collider];
   auto exit = std::find_if(rows.exits.begin(), rows.exits.end(), [&](const BadStart<Real>& e) {
     return e.collider == collider && e.cloth == cloth;
   });
@@ -122,12 +123,14 @@ void add_inside(const ObjectRowSource<Real>& source, Index i, const Vec3<Real>& 
   };
   if (exit == rows.exits.end()) {
     if (!(distance < -thickness_at(source.cloths, i))) return add(normal, distance);
-    rows.exits.push_back({collider, cloth, find_way_out(source, collider, cloth), 0});
+    const Vec3<Real> way = find_way_out(source, collider, cloth);
+    rows.exits.push_back({collider, cloth, frame.own_direction(way), 0});
     exit = rows.exits.end() - 1;
   }
   ++exit->particles;
   note_inside(i, collider, inside);
-  add(exit->direction, -distance_out(source.shapes, collider, x, exit->direction));
+  const Vec3<Real> way = frame.world_direction(exit->direction);
+  add(way, -distance_out(source.shapes, collider, x, way));
 }
 
 WEFT_INSTANTIATE_FUNCTIONS(still_leaves, add_inside)

@@ -120,7 +120,7 @@ template <class Real>
 struct BadStart {
   std::size_t collider = 0;
   Index cloth = 0;
-  Vec3<Real> direction = Vec3<Real>::UnitY();  ///< in which it leaves, unit
+  Vec3<Real> direction = Vec3<Real>::UnitY();  ///< in which it leaves, in the object's frame, unit
   std::size_t particles = 0;                   ///< how many are still inside
 };
 

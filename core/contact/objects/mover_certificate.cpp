@@ -55,7 +55,8 @@ bool keep_off_mover(ObjectCertificate<Real>& c, const ContactRow<Real>& row) {
 }
 
 /// Holds the particles of a row that would cross its plane if its object rests; if it moves, they
-/// are carried along, or else it stands.
+/// are carried along, or else it stands. It stands before nothing that it still has to lead out:
+/// that is on the wrong side anyway.
 /// @return whether something was changed
 template <class Real>
 bool hold_row(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool carry) {
@@ -70,7 +71,7 @@ bool hold_row(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool carr
     const bool moves = mover && c.shapes.frames[collider].moves;
     Real least = moves ? std::min(now, c.smallest_gap) : least_end(row, now, c.smallest_gap);
     if (moves)
-      least = std::max(least,
+      least = std::max(now < 0 ? now - Real(kCarrySlack) : least,
                        std::min(now, least_height(row, true, c.smallest_gap)) - Real(kCarrySlack));
     const bool held = state.inverse_mass[i] == 0;
     const Vec3<Real> before = state.v[i];
@@ -79,6 +80,8 @@ bool hold_row(ObjectCertificate<Real>& c, const ContactRow<Real>& row, bool carr
       state.v[i].setZero();
     } else if (moves && carry && !held) {
       state.v[i] = c.shapes.frames[collider].velocity_at(state.x[i]);
+    } else if (moves && now < c.smallest_gap && c.rows.leads_out(row)) {
+      continue;
     } else if (moves && (*c.motion.colliders)[collider].forced) {
       (*c.motion.colliders)[collider].voided = true;
       continue;

@@ -27,10 +27,12 @@ bool find_stopped(const ClothState<Real>& state, MoverStops<Real>& stops) {
 
 /// Whether particle k of a row ends where it may, if its object moves as it is said to now. How far
 /// particles go does not matter here: displacements that were within reach have only become
-/// shorter.
+/// shorter. What is still led out of the object is on the wrong side anyway.
 template <class Real>
 bool ends_legally(const StoppedStep<Real>& step, const ContactRow<Real>& row, std::size_t k) {
   const auto i = at_index(row.particle[k]);
+  const Real now = row.normal.dot(step.state.x[i]) - row.offset;
+  if (now < step.smallest_gap && step.rows.leads_out(row)) return true;
   const Real start = row.normal.dot(step.x_unpushed[i]) - row.offset;
   const Real end =
       height_after<Real>(step.rows, step.shapes, row, step.state.x[i] + step.state.v[i] * step.dt);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -40,6 +41,13 @@ struct RowList {
   std::vector<ContactRow<Real>> all;
   std::vector<MovingRow<Real>> moving;
   std::vector<BadStart<Real>> exits;
+
+  /// Whether a row's cloth is just led out of the row's object, about which nothing is promised.
+  bool leads_out(const ContactRow<Real>& row) const {
+    return std::any_of(exits.begin(), exits.end(), [&row](const BadStart<Real>& exit) {
+      return static_cast<Index>(exit.collider) == row.collider && exit.cloth == row.cloth;
+    });
+  }
 };
 
 /// All rows, and what is known of them together.

@@ -53,19 +53,10 @@ Real most_push(const ObjectSolve<Real>& solve, const ContactRow<Real>& row, Real
 /// that close, or where cloth is drawn between two, one pushes it out into the other. What started
 /// inside is led out however its edges lie.
 template <class Real>
-void take_back_pushes(const ObjectSolve<Real>& solve, const Vec3Array<Real>& x_unpushed,
+void take_back_pushes(const ObjectRows<Real>& rows, const Vec3Array<Real>& x_unpushed,
                       Real smallest_gap, Vec3Array<Real>& x) {
-  const ObjectRows<Real>& rows = solve.rows;
-  const auto leaves = [&solve](const ContactRow<Real>& row) {
-    const auto collider = at_index(row.collider);
-    if (row.mover != kNone && (*solve.motion.colliders)[collider].is_active()) return false;
-    const std::vector<BadStart<Real>>& exits = solve.rows.exits;
-    return std::any_of(exits.begin(), exits.end(), [&row, collider](const BadStart<Real>& exit) {
-      return exit.collider == collider && exit.cloth == row.cloth;
-    });
-  };
   for (const ContactRow<Real>& row : rows.all) {
-    if (!rows.exits.empty() && leaves(row)) continue;
+    if (rows.leads_out(row)) continue;
     const Real wanted = least_height(row, row.mover != kNone, smallest_gap);
     for (std::size_t k = 0; k < row.count; ++k) {
       const auto i = at_index(row.particle[k]);
@@ -302,7 +293,7 @@ void push_out(ObjectSolve<Real>& solve, Real smallest_gap, Real dt) {
     share_out<Real>(row, push_way(solve, row) * step, state.x);
     response.pushed.push_back(r);
   }
-  if (!response.pushed.empty()) take_back_pushes(solve, response.x_unpushed, smallest_gap, state.x);
+  if (!response.pushed.empty()) take_back_pushes(rows, response.x_unpushed, smallest_gap, state.x);
   // A lone particle leaves the only plane that it could come too near to.
   respond_alone(solve, dt, true);
 }

@@ -27,6 +27,25 @@ WorldDef sheet_through(const ShapeDef& shape, double height) {
   return def;
 }
 
+/// A conical tube of cotton about a cylinder: its top is outside, its bottom up to 7 mm inside.
+WorldDef tube_in_cylinder(const Vec3d& velocity, const Vec3d& spin) {
+  constexpr double kSeconds = 1.5;
+  WorldDef def;
+  ClothDef& cloth = def.cloths[0];
+  cloth.mesh = ClothMesh{test::tube(0.143, 0.155, 48, 9, 0.3, 0.6), {}};
+  cloth.fabric = make_fabric("cotton");
+  def.environment.gravity.setZero();
+  def.environment.damping = 2;
+  def.contact.seed.self = SelfContact::guard;
+  ColliderDef cylinder{"cylinder", MeshDef{test::closed_cylinder(0.15, 0.7, 64, 2)}};
+  const double turn = (spin * kSeconds).norm();
+  const Vec3d axis = turn > 0 ? spin.normalized() : Vec3d(Vec3d::UnitY());
+  cylinder.motion.keyframes = {
+      {}, {kSeconds, velocity * kSeconds, Eigen::Quaterniond(Eigen::AngleAxisd(turn, axis))}};
+  def.colliders = {cylinder};
+  return def;
+}
+
 }  // namespace
 
 TEST_CASE("a sheet that starts halfway through a solid is out of it within 2 s, little strained") {
@@ -102,6 +121,40 @@ TEST_CASE(
     REQUIRE(counter.count(world).total() == 0);
     CHECK(world.deepest_penetration() <= 0);
   }
+}
+
+TEST_CASE("a tube that starts partly inside a cylinder is led out of it, moving, as at rest") {
+  struct Way {
+    const char* name;
+    Vec3d velocity, spin;  // [m/s], [rad/s]
+  };
+  const Vec3d none = Vec3d::Zero();
+  const double degree = std::numbers::pi / 180;
+  const auto way = GENERATE_COPY(
+      values<Way>({{"rests", none, none},
+                   {"turns slowly", none, Vec3d(0, 2 * degree, 0)},
+                   {"turns", none, Vec3d(0, 90 * degree, 0)},
+                   {"tilts", none, Vec3d(0, 0, 20 * degree)},
+                   {"rises", Vec3d(0, 0.001, 0), none},
+                   {"goes", Vec3d(0.1, 0, 0), none},
+                   {"turns and rises", Vec3d(0, 0.05, 0), Vec3d(0, 20 * degree, 0)}}));
+  CAPTURE(way.name);
+  World<float> world(tube_in_cylinder(way.velocity, way.spin));
+  CrossingCounter<float> counter;
+  world.step();
+  REQUIRE(world.bad_starts().size() == 1);
+  double largest_strain = 0;
+  int blocked = 0;
+  for (int tick = 1; tick < 80; ++tick) {
+    REQUIRE_FALSE(world.step().divergence);
+    largest_strain = std::max(largest_strain, world.report().largest_strain);
+    blocked += world.colliders()[0].blocked ? 1 : 0;
+    if (tick >= 60) CHECK(counter.count(world).total() == 0);
+  }
+  CHECK(world.bad_starts().empty());
+  CHECK(world.deepest_penetration() == 0);
+  CHECK(largest_strain < 0.1);
+  CHECK(blocked < 4);
 }
 
 TEST_CASE("a sheet that starts beside an object is not called a bad start") {
