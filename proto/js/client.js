@@ -244,12 +244,15 @@ export class WeftClient extends Session {
 
   /**
    * @param {number} n
-   * @param {Omit<import('./commands.js').AdvanceCommand, 'n'>} [options]  the frames that were asked for
-   *   come as events `frame` before the result
+   * @param {Omit<import('./commands.js').AdvanceCommand, 'n'>} [options]  the frames that were asked for,
+   *   that of the last tick without a word, come as events `frame` before the result; with `frames:
+   *   undefined` they are those that the viewer's `hz` allows, some perhaps after it
    * @param {Call} [call]
    */
   advance(n, options = {}, call = { timeout: ADVANCE_TIMEOUT + ADVANCE_TICK_TIMEOUT * n }) {
-    return this.request('advance', { n, ...known('advance', options) }, call);
+    // What is observed is the last frame, and forces are then measured in no other tick.
+    const frames = options.observe ? undefined : 'last';
+    return this.request('advance', { n, frames, ...known('advance', options) }, call);
   }
 
   /** @param {Call} [call] */

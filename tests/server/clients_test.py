@@ -1,4 +1,4 @@
-"""Our own clients in Python and JavaScript against the real server: loops of calls run on at its limit."""
+"""Our own clients in Python and JavaScript against the real server: what calls tell, and loops of them at its limit."""
 
 import json
 import os
@@ -34,6 +34,23 @@ console.log(JSON.stringify({ hashes: [...hashes] }));
 process.exit(0);
 """
 
+LAST_FRAME = """
+import { WeftClient } from %(client)s;
+import WebSocket from %(ws)s;
+const weft = new WeftClient(%(url)s, { WebSocket, reconnect: false });
+await weft.connect();
+let tick = 0;
+weft.on('frame', (frame) => (tick = frame.tick));
+const ticks = [], frames = [];
+for (const n of [10, 10, 1, 1, 7, 7, 33, 33, 3, 3]) {
+  ticks.push((await weft.advance(n)).tick);
+  frames.push(Number(tick));
+}
+weft.close();
+console.log(JSON.stringify({ ticks, frames }));
+process.exit(0);
+"""
+
 
 class Refusals(unittest.TestCase):
     def test_a_script_is_told_why_the_server_does_not_let_it_in(self):
@@ -63,6 +80,25 @@ class Loops(unittest.TestCase):
             self.assertEqual(len(hashes), 1)
             self.assertEqual(cloth.advance(5, frames="last")["tick"], 5)
             self.assertEqual(cloth.frame.tick, 5)
+
+    def test_after_an_advance_the_frame_is_that_of_its_last_tick(self):
+        with weft.open(self.server.websocket) as cloth:
+            for n in (10, 1, 7, 33, 3):
+                for _ in range(4):
+                    tick = cloth.advance(n)["tick"]
+                    self.assertEqual(cloth.frame.tick, tick)
+        script = LAST_FRAME % {
+            "client": json.dumps((ROOT / "proto/js/index.js").as_uri()),
+            "ws": json.dumps((ROOT / "web/node_modules/ws/wrapper.mjs").as_uri()),
+            "url": json.dumps(self.server.websocket),
+        }
+        done = subprocess.run(
+            [shutil.which("node"), "--input-type=module", "-e", script],
+            capture_output=True, text=True, timeout=200, check=False,
+        )
+        self.assertEqual(done.stderr, "")
+        seen = json.loads(done.stdout)
+        self.assertEqual(seen["frames"], seen["ticks"])
 
     def test_a_loop_of_javascript_calls_runs_on_at_the_limit_and_so_do_calls_at_once(self):
         client, ws = ROOT / "proto/js/index.js", ROOT / "web/node_modules/ws/wrapper.mjs"

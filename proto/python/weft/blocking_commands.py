@@ -339,26 +339,27 @@ class BlockingCommands(Runner):
 
     @overload
     def advance(
-        self, n: int, *, frames: Literal["none", "last", "all"] | None = None, observe: None = None,
+        self, n: int, *, frames: Literal["none", "last", "all"] | None = "last", observe: None = None,
         timeout: float | None = CLIENTS,
     ) -> AdvanceResult: ...  # fmt: skip
 
     @overload
     def advance(
-        self, n: int, *, frames: Literal["none", "last", "all"] | None = None, observe: Iterable[str],
+        self, n: int, *, frames: Literal["none", "last", "all"] | None = "last", observe: Iterable[str],
         timeout: float | None = CLIENTS,
     ) -> Observation: ...  # fmt: skip
 
     def advance(
-        self, n: int, *, frames: str | None = None, observe: Iterable[str] | None = None,
+        self, n: int, *, frames: str | None = "last", observe: Iterable[str] | None = None,
         timeout: float | None = CLIENTS,
     ) -> Any:  # fmt: skip
         """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash.
 
-        `frames` says which of its frames this viewer gets, regardless of its `hz`: "all", "last" or "none";
-        by default those that its `hz` allows. They arrive before the result, so that `frame` is then the
-        last tick's. `observe` lists what else to tell of the last tick ("velocities", "contacts", "reactions",
-        "grippers"): `observation` of the result is its frame with them.
+        `frames` says which of its frames this viewer gets, regardless of its `hz`: "last", "all" or "none".
+        They arrive before the result, so that with the first two `frame` is then the last tick's. With None
+        they are those that its `hz` allows, and that of the last tick may come after the result. `observe`
+        lists what else to tell of the last tick ("velocities", "contacts", "reactions", "grippers"):
+        `observation` of the result is its frame with them.
         """
         wanted: Any = self._client.advance
         return self._run(wanted(n, frames=frames, observe=observe, timeout=timeout))

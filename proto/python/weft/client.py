@@ -133,33 +133,35 @@ class Client(Queries):
 
     @overload
     async def advance(
-        self, n: int, *, frames: Literal["none", "last", "all"] | None = None, observe: None = None,
+        self, n: int, *, frames: Literal["none", "last", "all"] | None = "last", observe: None = None,
         timeout: float | None = CLIENTS,
     ) -> AdvanceResult: ...  # fmt: skip
     @overload
     async def advance(
-        self, n: int, *, frames: Literal["none", "last", "all"] | None = None, observe: Iterable[str],
+        self, n: int, *, frames: Literal["none", "last", "all"] | None = "last", observe: Iterable[str],
         timeout: float | None = CLIENTS,
     ) -> Observation: ...  # fmt: skip
     async def advance(
-        self, n: int, *, frames: str | None = None, observe: Iterable[str] | None = None,
+        self, n: int, *, frames: str | None = "last", observe: Iterable[str] | None = None,
         timeout: float | None = CLIENTS,
     ) -> Any:  # fmt: skip
         """Runs n ticks as fast as possible; the room must be paused. Result: tick and hash.
 
-        `frames` says which of its frames this viewer gets, regardless of its `hz`: "all", "last" or "none";
-        by default those that its `hz` allows. They arrive before the result, so that `frame` is then the
-        last tick's. `observe` lists what else to tell of the last tick ("velocities", "contacts", "reactions",
-        "grippers"): `observation` of the result is its frame with them.
+        `frames` says which of its frames this viewer gets, regardless of its `hz`: "last", "all" or "none".
+        They arrive before the result, so that with the first two `frame` is then the last tick's. With None
+        they are those that its `hz` allows, and that of the last tick may come after the result. `observe`
+        lists what else to tell of the last tick ("velocities", "contacts", "reactions", "grippers"):
+        `observation` of the result is its frame with them.
         """
         if timeout is CLIENTS:
             ticks = n if is_number(n) or isinstance(n, float) else 0  # the server refuses other types
             timeout = ADVANCE_SECONDS + ADVANCE_TICK_SECONDS * ticks
         if isinstance(observe, str):
             raise TypeError(f"observe is a list of words, as [{observe!r}]")
-        fields = without_none({"frames": frames, "observe": None if observe is None else list(observe)})
         if observe is None:
-            return await self.request("advance", timeout=timeout, n=n, **fields)
+            return await self.request("advance", timeout=timeout, n=n, **without_none({"frames": frames}))
+        # What is observed is the last frame, and forces are then measured in no other tick.
+        fields = without_none({"frames": None if frames == "last" else frames, "observe": list(observe)})
         frames_told: list[Frame] = []
         end = self.on("frame", frames_told.append)
         try:

@@ -49,8 +49,8 @@ CLIENT_CALLS = [
     call("follow", 4, sends={"op": "follow", "viewer": 4}),
     call("lead", on=False, sends={"op": "lead", "on": False}),
     call("invite", "look", sends={"op": "invite", "right": "look"}),
-    call("advance", 600, sends={"op": "advance", "n": 600}),
-    call("advance", 1, frames="last", sends={"op": "advance", "n": 1, "frames": "last"}),
+    call("advance", 600, sends={"op": "advance", "n": 600, "frames": "last"}),
+    call("advance", 1, frames="none", sends={"op": "advance", "n": 1, "frames": "none"}),
     call("advance", 10, observe=["velocities"], sends={"op": "advance", "n": 10, "observe": ["velocities"]}),
     call("query", "camera", viewer=4, sends={"op": "query", "what": "camera", "viewer": 4}),
     call("query", "boxes", tree="edges", level=3, sends={
