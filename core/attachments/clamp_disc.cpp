@@ -24,13 +24,13 @@ std::array<double, 2> place_of(const ClothModel<Real>& model, Index particle) {
 double ClampDisc::beyond(const std::array<double, 2>& place, std::size_t axis) const {
   assert(axis < 2 && radius > 0);
   const double along = place[axis] - middle[axis], across = place[1 - axis] - middle[1 - axis];
-  const double half_chord2 = radius * radius - across * across;
-  if (half_chord2 <= 0) return std::numeric_limits<double>::infinity();
-  return (std::abs(along) - std::sqrt(half_chord2)) / cell[axis];
+  if (std::abs(across) >= radius - slack()) return std::numeric_limits<double>::infinity();
+  return (std::abs(along) - std::sqrt(radius * radius - across * across)) / cell[axis];
 }
 
 bool ClampDisc::holds(const std::array<double, 2>& place) const {
-  return std::min(beyond(place, 0), beyond(place, 1)) < kMostBeyond;
+  const double least = std::min(beyond(place, 0), beyond(place, 1));
+  return least < kMostBeyond - slack() / std::min(cell[0], cell[1]);
 }
 
 template <class Real>
@@ -42,7 +42,8 @@ std::optional<ClampDisc> clamp_of_disc(const ClothModel<Real>& model, Index cent
                        place_of(model, centre),
                        radius,
                        {cell_of(part, 0), cell_of(part, 1)}};
-  if (radius < kLeastClampedDisc * std::max(disc.cell[0], disc.cell[1])) return std::nullopt;
+  if (radius + disc.slack() < kLeastClampedDisc * std::max(disc.cell[0], disc.cell[1]))
+    return std::nullopt;
   return disc;
 }
 
@@ -71,7 +72,7 @@ void put_disc(const ClampDisc& disc, std::span<const Index> held, const ClothMod
       next[axis] += std::copysign(disc.cell[axis], along);
       const double beyond = disc.beyond(place, axis);
       // A line that touches the circle, or has one held particle, does not bend there.
-      if (along == 0 || beyond >= 1 || disc.holds(next)) continue;
+      if (along == 0 || beyond >= 1 - disc.slack() / disc.cell[axis] || disc.holds(next)) continue;
       assert(beyond > kMostBeyond - 1.001);
       factors[static_cast<std::size_t>(site)][axis] =
           std::round(kStiffeningParts / (0.5 + beyond)) / kStiffeningParts;

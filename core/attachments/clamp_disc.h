@@ -19,7 +19,7 @@ namespace weft {
 /// line about that particle gets the factor 1 / (1/2 - e). A particle is held if it lies within the
 /// circle, or beyond it by less than 5/8 of a cell along its row or its column, so that e <= 3/8
 /// everywhere. Without the factors the cloth would bend about the staircase of the particles
-/// within, and drape by the cell.
+/// within, and drape by the cell. Lines that only touch the circle, to within rounding, miss it.
 struct ClampDisc {
   std::size_t part = 0;                 ///< of the model
   std::array<double, 2> middle = {};    ///< (u, v) [m]
@@ -31,6 +31,9 @@ struct ClampDisc {
   double beyond(const std::array<double, 2>& place, std::size_t axis) const;
 
   bool holds(const std::array<double, 2>& place) const;
+
+  /// How far rounding may move a place over the circle [m].
+  double slack() const { return disc_slack(middle, radius); }
 };
 
 /// The clamp of a disc around a particle: of a grid that bends by the quadratic form, if its radius

@@ -30,7 +30,9 @@ void weigh_disc(const ClothModel<Real>& model, const GrabDef& def, Grab<Real>& g
   const Triangle& hit = model.triangles[at_index(def.triangle)];
   double sum = 0;
   std::vector<double> weights;
-  for (const Index i : joined_near(model, hit, [&](Index k) { return inside(k) > 0; })) {
+  // What lies on the circle weighs nothing.
+  const double least = 2 * disc_slack({u, v}, def.radius) / def.radius;
+  for (const Index i : joined_near(model, hit, [&](Index k) { return inside(k) > least; })) {
     grab.particles.push_back(i);
     const double part = inside(i);
     weights.push_back(part * part * static_cast<double>(model.mass[at_index(i)]));

@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <cmath>
 #include <utility>
 
+#include "core/cloth/constants.h"
 #include "core/cloth/corner_places.h"
 #include "core/cloth/cut_grid.h"
 #include "core/cloth/grid_cloth.h"
@@ -145,18 +147,26 @@ std::vector<Index> joined_near(const ClothModel<Real>& model, std::span<const In
   return joined;
 }
 
+double disc_slack(const std::array<double, 2>& middle, double radius) {
+  assert(radius >= 0);
+  return kDiscSlack * radius + kPlaceSlack * std::hypot(middle[0], middle[1]);
+}
+
 template <class Real>
 std::vector<Index> particles_in_disc(const ClothModel<Real>& model, Index centre, double radius) {
   assert(centre >= 0 && centre < model.particle_count());
   assert(radius >= 0);
   if (radius == 0) return {centre};
-  const auto& middle = model.material[static_cast<std::size_t>(centre)];
+  const auto place_of = [&model](Index i) -> std::array<double, 2> {
+    const auto& place = model.material[static_cast<std::size_t>(i)];
+    return {static_cast<double>(place[0]), static_cast<double>(place[1])};
+  };
+  const std::array<double, 2> middle = place_of(centre);
+  const double most = radius + disc_slack(middle, radius);
   const std::array<Index, 1> start = {centre};
   return joined_near(model, start, [&](Index i) {
-    const auto& m = model.material[static_cast<std::size_t>(i)];
-    const double du = static_cast<double>(m[0] - middle[0]),
-                 dv = static_cast<double>(m[1] - middle[1]);
-    return i == centre || du * du + dv * dv <= radius * radius;
+    const std::array<double, 2> place = place_of(i);
+    return i == centre || std::hypot(place[0] - middle[0], place[1] - middle[1]) <= most;
   });
 }
 

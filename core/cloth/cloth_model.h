@@ -273,6 +273,10 @@ template <class Real>
 std::vector<Index> joined_near(const ClothModel<Real>& model, std::span<const Index> start,
                                const std::function<bool(Index)>& is_near);
 
+/// How far rounding may move a place of the fabric over a circle on which it lies [m]. Floats and
+/// doubles must agree on what a circle holds, and so must its halves.
+double disc_slack(const std::array<double, 2>& middle, double radius);
+
 /// The particles of the same part within material distance `radius` [m] of particle `centre` that
 /// edges near there join to it, in ascending order; at radius 0 the centre alone.
 template <class Real>

@@ -7,6 +7,13 @@
 
 namespace weft {
 
+// Places on the fabric.
+
+/// Rounding of a place about a circle, as fractions of the circle's radius and of the distance of
+/// its middle from the origin of the fabric [1]; the latter are a few roundings of a float. Larger:
+/// discs hold particles beyond them. Smaller: rounding decides about those on their circles.
+inline constexpr double kDiscSlack = 1e-5, kPlaceSlack = 5e-7;
+
 // Stability of the explicit solver.
 
 /// Margin of the springs' squared frequency over its row sums [1]. Linear theory requires less: the
