@@ -12,8 +12,8 @@ namespace weft {
 
 // Places of a cloth that do not depend on its resolution. They are given in the fabric: `left` is
 // the least u, `right` the largest, `top` the least v (row 0 of a grid), `bottom` the largest,
-// wherever these lie in space. On a mesh whose uv run upwards in v, `top` is the lower edge; a mesh
-// without uv gets v downwards.
+// wherever these lie in space. On a mesh whose uv run upwards in v, `top` is the lower edge, and so
+// it is of a GLB, whose v is turned over on reading; a mesh without uv gets v downwards.
 
 enum class Corner : std::uint8_t { top_left, top_right, bottom_left, bottom_right };
 
@@ -72,7 +72,9 @@ template <class Def, class Visitor>
 void visit_fields_of_strip(Def& strip, Visitor&& visit) {
   visit(choice("side", "top|bottom|left|right",
                "side of the fabric: top is the least v, left the least u; on a mesh whose v runs "
-               "upwards, as in most OBJ, top is the lower edge, without uv the upper one"),
+               "upwards, as in most OBJ, top is the lower edge, and so it is of a GLB, whose v is "
+               "turned over on "
+               "reading; without uv it is the upper one"),
         strip.side);
   visit(FieldInfo{"width", 0, 100, "m",
                   "width of the pinned strip; on a grid it clamps at its border, and with 0 it "

@@ -20,7 +20,8 @@ enum class LookOf {
   nylon,
 };
 
-/// The look of one cloth. Its front is the side from which u runs to the right and v down.
+/// The look of one cloth. Its front is the side from which its triangles are clockwise, as
+/// those of a grid are from where u runs to the right and v down.
 struct LookDef {
   LookOf fabric = LookOf::automatic;
   std::string color;  ///< of the front, "#rrggbb"; empty: the viewer's

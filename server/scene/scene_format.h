@@ -95,7 +95,11 @@ void describe_fabric(Io& io, FabricDef& fabric) {
 template <class Io>
 void describe_look(Io& io, LookDef& look) {
   io.fields([&](auto&& visit) { visit_fields_of_look(look, visit); });
-  io.text({"color", 7, 7, false, false, "of the front: u right, v down, #rrggbb", true},
+  io.text({"color", 7, 7, false, false,
+           "of the front, #rrggbb: the side from which its triangles are clockwise; a grid is seen "
+           "from "
+           "there with u to the right and v down",
+           true},
           look.color);
   io.text({"back", 7, 7, false, false, "of the other side, #rrggbb", true}, look.back);
 }
@@ -164,7 +168,10 @@ void describe_motion(Io& io, MotionDef& motion) {
   io.list(ListInfo{"keyframes", 1, kMostKeyframes, "its poses, in order of time"}, motion.keyframes,
           [](Io& in, Keyframe& keyframe) {
             in.fields([&](auto&& visit) { visit_fields_of_keyframe(keyframe, visit); });
-            in.orientation("rotation", "turn about the pivot from how it is defined",
+            in.orientation("rotation",
+                           "turn about the pivot from how it is defined: the centre of a sphere or "
+                           "box, the middle of a capsule, the point of a plane, the middle of the "
+                           "box along the axes around a mesh where it is placed",
                            keyframe.rotation);
           });
 }
