@@ -73,8 +73,7 @@ void visit_fields_of_strip(Def& strip, Visitor&& visit) {
   visit(choice("side", "top|bottom|left|right",
                "side of the fabric: top is the least v, left the least u; on a mesh whose v runs "
                "upwards, as in most OBJ, top is the lower edge, and so it is of a GLB, whose v is "
-               "turned over on "
-               "reading; without uv it is the upper one"),
+               "turned over on reading; without uv it is the upper one"),
         strip.side);
   visit(FieldInfo{"width", 0, 100, "m",
                   "width of the pinned strip; on a grid it clamps at its border, and with 0 it "

@@ -93,11 +93,11 @@ FabricDef leather() {
 
 FabricDef nylon() {
   FabricDef f;
-  f.areal_density = 0.05;                                            // ours, flag cloth
-  f.stretch_warp = f.stretch_weft = 1000;                            // ours
-  f.shear = 0.7 * kKesShear;                                         // ours
+  f.areal_density = 0.05;                                           // ours, flag cloth
+  f.stretch_warp = f.stretch_weft = 1000;                           // ours
+  f.shear = 0.7 * kKesShear;                                        // ours
   f.bending_warp = f.bending_weft = bending_rigidity(0.05, 0.014);  // filaments
-  f.friction = 0.3;                                                  // ours
+  f.friction = 0.3;                                                 // ours
   return f;
 }
 

@@ -96,9 +96,8 @@ template <class Io>
 void describe_look(Io& io, LookDef& look) {
   io.fields([&](auto&& visit) { visit_fields_of_look(look, visit); });
   io.text({"color", 7, 7, false, false,
-           "of the front, #rrggbb: the side from which its triangles are clockwise; a grid is seen "
-           "from "
-           "there with u to the right and v down",
+           "of the front, #rrggbb: the side from which its triangles are clockwise; a grid is "
+           "seen from there with u to the right and v down",
            true},
           look.color);
   io.text({"back", 7, 7, false, false, "of the other side, #rrggbb", true}, look.back);
