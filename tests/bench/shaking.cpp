@@ -75,7 +75,7 @@ ShakingFigure shake(const WorldDef& def, test::Disturbance disturbance, const Wo
 std::vector<ShakingFigure> measure_shaking(bool quick) {
   const std::vector<Setting> solvers = {{"verlet", "x1", 1, 1, 1, 1},
                                         {"implicit", "1x2", 1, 1, 1, 2},
-                                        {"xpbd", "32x1", 1, 1, 32, 1},
+                                        {"xpbd", "32x2", 1, 1, 32, 2},
                                         {"relaxation", "1x2", 1, 1, 1, 2}};
   const std::vector<int> sizes = quick ? std::vector<int>{17} : std::vector<int>{33, 64};
   std::vector<ShakingFigure> figures;
