@@ -2,6 +2,7 @@
 #include <array>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include <catch2/catch.hpp>
 
@@ -43,6 +44,15 @@ std::array<double, 2> mean_press(World<float>& world, int ticks = 60) {
       mean[k] -= world.reactions()->colliders[gripper.jaw[k]].dot(press_of(gripper, k)) / ticks;
   }
   return mean;
+}
+
+/// The force with which the first jaw presses in half of some ticks [N]. A fold that turns between
+/// jaws presses with several times as much for moments.
+double median_press(World<float>& world, int ticks = 60) {
+  std::vector<double> press;
+  for (int t = 0; t < ticks; ++t) press.push_back(mean_press(world, 1)[0]);
+  std::nth_element(press.begin(), press.begin() + ticks / 2, press.end());
+  return press[static_cast<std::size_t>(ticks / 2)];
 }
 
 double highest(const World<float>& world) {
@@ -163,7 +173,7 @@ TEST_CASE("jaws that were sent into a sheet on a table close all the same, and l
     up.position = Vec3d(0, 0.4, 0);
     command(world, 0, up);
     test::advance(world, 4.5);  // it is there after 4, and layers have settled between the jaws
-    for (const double press : mean_press(world)) CHECK(press == Approx(5).epsilon(0.3));
+    CHECK(median_press(world) == Approx(5).epsilon(0.1));
     CHECK(highest(world) > 0.25);
   }
 }

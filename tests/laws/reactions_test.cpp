@@ -1,5 +1,6 @@
 #include <catch2/catch.hpp>
 
+#include "core/cloth/fabric_presets.h"
 #include "core/scenes/scenes.h"
 #include "core/world/world.h"
 #include "tests/support/sheets_of_triangles.h"
@@ -71,6 +72,48 @@ TEST_CASE("the strip that holds a curtain carries its weight") {
   test::advance(world, 12);
   const Vec3d sum = sum_of_pins(world.coming_reactions());
   CHECK(sum[1] == Approx(weight_of(world)).epsilon(1e-3));
+}
+
+TEST_CASE("the pins of cloth that lies crumpled on itself carry all of its weight") {
+  // Drawn sideways by more than its weight, it hangs from a strip and folds upon itself.
+  ClothDef cloth = test::flat_cloth(8, 16, 0.9376, 0.8933);
+  cloth.fabric = make_fabric("cotton");
+  cloth.fabric.areal_density = 0.3;
+  cloth.fabric.shear = 25.72;
+  cloth.fabric.shear_damping = 0.0173;
+  cloth.fabric.bending_damping = 0;
+  cloth.fabric.friction = 0.3;
+  cloth.fabric.thickness = GENERATE(1e-3, 2e-3, 3e-3);
+  cloth.origin = Vec3d(-0.4931, 0.8362, 0.0169);
+  cloth.v = -Vec3d::UnitY();
+  WorldDef def = test::empty_world(cloth);
+  def.environment.gravity = Vec3d(-18.34, -0.1018, -0.7848);
+  def.environment.damping = 5;
+  def.tick_rate = 30;
+  def.contact.seed.self = SelfContact::guard;
+  def.pins = {{EdgeStrip{Side::left, 0.0612}}, {MaterialPoint{0.3202, 0.5707}}};
+  World<float> world(def);
+  test::advance(world, 8);
+  world.measure_forces(true);
+  const auto momentum = [&world] {
+    Vec3d sum = Vec3d::Zero();
+    for (std::size_t i = 0; i < world.state().v.size(); ++i)
+      sum += world.state().v[i].cast<double>() * static_cast<double>(world.model().mass[i]);
+    return sum;
+  };
+  const Vec3d before = momentum();
+  Vec3d pins = Vec3d::Zero(), drag = Vec3d::Zero();
+  const int ticks = 60;
+  for (int t = 0; t < ticks; ++t) {
+    drag += momentum() * def.environment.damping / ticks;
+    world.step();
+    pins += sum_of_pins(*world.reactions()) / ticks;
+  }
+  const double seconds = ticks * world.tick_seconds();
+  const Vec3d weight = def.environment.gravity * (weight_of(world) / kGravity);
+  const Vec3d lack = pins + weight - drag - (momentum() - before) / seconds;
+  CAPTURE(cloth.fabric.thickness, lack / weight.norm());
+  CHECK(lack.norm() < 0.01 * weight.norm());
 }
 
 TEST_CASE("what a sheet lies on carries its weight: ground and box, moving or still") {

@@ -50,6 +50,7 @@ template <class Real>
 void forget(RowMaking<Real>& making) {
   making.made = false;
   making.passed.clear();
+  making.jammed.clear();
   std::fill(making.is_moved.begin(), making.is_moved.end(), 0);
   for (RowPart<Real>& part : making.parts) {
     part.columns.clear();
@@ -158,7 +159,8 @@ void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile)
   making_.time += dt;
   ++making_.steps;
   if (!making_.made || is_time_to_look(making_)) rows_.deals.give_back(rows_.all, executor_);
-  const RowSource<Real> source{cloths_, state, step_.from};
+  const RowSource<Real> source = row_source(state);
+  if (!stopped_.jammed.empty() && is_time_to_look(making_)) note_jammed(stopped_.jammed, making_);
   if (find_moved(pairs_.active, step_.from, cloths_.thickest, making_))
     renew_rows(source, regions_.anchor, pairs_, making_, rows_, executor_, profile);
   if (making_.steps % kStepsBetweenCuts == 0) {
@@ -180,7 +182,7 @@ template <class Real>
 void ClothGuard<Real>::examine_rows(const ClothState<Real>& state, Real dt, Profile& profile) {
   find_busy_rows(step_.from, sweeps_.v, dt, rows_, executor_);
   measure_pressures(cloths_.inverse_area, sweeps_.kicked, rows_, executor_);
-  turn_rows({cloths_, state, step_.from}, making_, rows_, executor_, profile);
+  turn_rows(row_source(state), making_, rows_, executor_, profile);
   rows_.deals.take(rows_.slabs, rows_.all, step_.from.size(), executor_);
 }
 

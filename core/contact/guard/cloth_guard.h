@@ -159,6 +159,9 @@ class ClothGuard {
   void collect_strays(Real dt, Profile& profile);
   void keep_in_regions(ClothState<Real>& state, Real dt, const std::function<Real()>& room,
                        Profile& profile);
+  RowSource<Real> row_source(const ClothState<Real>& state) const {
+    return {cloths_, state, step_.from, regions_.smallest_gap, making_.jammed};
+  }
   void examine_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void start_rows(ClothState<Real>& state, Real dt, Real kicked, Profile& profile);
 

@@ -172,6 +172,11 @@ inline constexpr double kStillNearest = 0.3;
 /// edge on edge, is stopped by its certificate. Smaller: cloth that slides along itself is braked.
 inline constexpr double kParallel = 0.2;
 
+/// Part of its distance that is kept by a pair which carries only because it is jammed [1]: the
+/// cloth beside it is nearer, and it slides past once it is free. Larger: folds that turn are
+/// braked. Smaller: what sweeps leave under load closes the gap again.
+inline constexpr double kJammedPart = 0.03;
+
 /// A particle that passes over the border of a triangle keeps its impulses if the cosine between
 /// both directions is above this [1]. Larger: they are lost on curved cloth. Smaller: they push
 /// elsewhere.

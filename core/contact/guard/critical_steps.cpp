@@ -281,7 +281,10 @@ void truncate(const GuardedPairs<Real>& pairs, const GuardedCloths<Real>& cloths
     state.v[i] = v_drift;
   };
   for (const CriticalPair<Real>& c : critical.pairs) {
-    if (c.fixed) stopped.pairs.push_back({pairs[c.pair].particle, c.weight, c.normal});
+    if (c.fixed) {
+      const GuardedPair<Real>& pair = pairs[c.pair];
+      stopped.pairs.push_back({pair.particle, c.weight, c.normal, key_of(pair)});
+    }
     for (const Index k : pairs[c.pair].particle) visit(k);
   }
   for (const Index k : critical.tight) visit(k);

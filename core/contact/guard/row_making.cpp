@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "core/contact/guard/carrying_pairs.h"
 #include "core/contact/guard/constants.h"
-#include "core/contact/guard/nearer_neighbour.h"
 #include "core/contact/parts.h"
 #include "core/instantiate.h"
 
@@ -30,26 +30,18 @@ bool weigh(const std::vector<Real>& inverse_mass, const PairSeparation<Real>& s,
   return mobility > 0;
 }
 
-/// Whether two edges carry each other: they are nearest between their ends and, if they are nearly
-/// parallel, nearer than the surfaces beside them. Such edges that pass each other are nearest
-/// aslant, where edges that cross are so across both.
-/// @param pushes  says whether they push each other already
+/// The first of the jammed pairs that does not come before a key.
+auto first_jammed(auto& jammed, std::uint64_t key) {
+  return std::lower_bound(
+      jammed.begin(), jammed.end(), key,
+      [](const JammedPair& pair, std::uint64_t wanted) { return pair.key < wanted; });
+}
+
+/// Whether a pair is jammed, by its key.
 template <class Real>
-bool edges_carry(const RowSource<Real>& source, const std::array<Index, 4>& particles,
-                 const PairSeparation<Real>& s, auto&& pushes) {
-  if (!s.inside) return false;
-  const auto& x = source.x;
-  const Quad<Real> a = x[at_index(particles[1])] - x[at_index(particles[0])],
-                   b = x[at_index(particles[3])] - x[at_index(particles[2])];
-  const Real ab = dot(a, b), both2 = dot(a, a) * dot(b, b);
-  if (ab * ab < both2 * (1 - Real(kParallel * kParallel))) return true;
-  const Real most = static_cast<Real>(pushes() ? kStillNearest : kLeadsNearer);
-  const Quad<Real> back = to_quad(s.normal), there = back * Real(-1);
-  for (std::size_t k = 0; k < 4; ++k) {
-    if (has_nearer_neighbour(source.cloths, x, particles[k], particles, k < 2 ? there : back, most))
-      return false;
-  }
-  return true;
+bool is_jammed(const RowSource<Real>& source, std::uint64_t key) {
+  const auto found = first_jammed(source.jammed, key);
+  return found != source.jammed.end() && found->key == key;
 }
 
 /// Turns one row. What edges push that do not carry each other is left to what is nearer.
@@ -58,7 +50,8 @@ void turn(const RowSource<Real>& source, const PairSeparation<Real>& s, GuardRow
   if (!(s.gap > 0)) return;
   const Quad<Real> slipped = row.slip + (weighted(row, source.x) - row.apart);
   if ((kind_of(row) == PairKind::edge_edge &&
-       !edges_carry(source, row.particle, s, [] { return true; })) ||
+       !edges_carry(source.cloths, source.x, row.particle, s, [] { return true; }) &&
+       !is_jammed(source, row.key)) ||
       !weigh(source.state.inverse_mass, s, row)) {
     row.push = 0;
     row.slip = {};
@@ -86,7 +79,8 @@ void turn_list(const RowSource<Real>& source, const std::vector<Index>& list, Ro
       if (columns.kind == PairKind::edge_edge || s.inside) continue;
       // A particle that has passed over a border is carried by the triangle beyond, and by none
       // that tilts.
-      if (!own_nearest(source.cloths, source.x, triangle_of(row), row.particle, s, true))
+      if (!own_nearest(source.cloths, source.x, triangle_of(row), row.particle, s, true) &&
+          !is_jammed(source, row.key))
         part.passed.push_back(row.particle[0]);
     }
   }
@@ -150,11 +144,10 @@ bool make_row(const RowSource<Real>& source, const RowMaking<Real>& making,
               const GuardedPair<Real>& pair, const PairSeparation<Real>& s, GuardRow<Real>& row) {
   const GuardedCloths<Real>& cloths = source.cloths;
   if (s.gap > cloths.thickest * Real(kRowReach) || !(s.gap > 0)) return false;
-  const auto pushes = [&] { return has_pushed(making, key_of(pair)); };
-  if (pair.kind == PairKind::edge_edge
-          ? !edges_carry(source, pair.particle, s, pushes)
-          : !s.inside && !own_nearest(cloths, source.x, pair.b, pair.particle, s, pushes()))
-    return false;
+  const bool jammed = is_jammed(source, key_of(pair));
+  const auto pushes = [&] { return !jammed && has_pushed(making, key_of(pair)); };
+  const bool passes = !carries(cloths, source.x, pair, s, pushes);
+  if (passes && !jammed) return false;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
     approach -= s.weight[k] * s.normal.dot(source.state.v[at_index(pair.particle[k])]);
@@ -163,6 +156,7 @@ bool make_row(const RowSource<Real>& source, const RowMaking<Real>& making,
   if (s.gap > cloths.thickest + margin) return false;
   const Index p = cloth_of(cloths, pair.particle[0]), q = cloth_of(cloths, pair.particle[2]);
   row.radius = kept_distance(cloths, pair, p, q);
+  if (passes) row.radius = std::max(row.radius * Real(kJammedPart), source.smallest_gap * 2);
   if (s.gap > row.radius + margin) return false;
   row.particle = pair.particle;
   if (!weigh(source.state.inverse_mass, s, row)) return false;
@@ -264,6 +258,16 @@ void place_new_particles(const GuardedPairs<Real>& pairs, std::size_t first,
 }
 
 template <class Real>
+void note_jammed(const std::vector<JammedPair>& found, RowMaking<Real>& making) {
+  for (const JammedPair& pair : found) {
+    const auto place = first_jammed(making.jammed, pair.key);
+    if (place != making.jammed.end() && place->key == pair.key) continue;
+    making.jammed.insert(place, pair);
+    making.passed.push_back(pair.first);
+  }
+}
+
+template <class Real>
 bool find_moved(const std::vector<Index>& active, const QuadArray<Real>& x, Real thickest,
                 RowMaking<Real>& making) {
   making.moved.clear();
@@ -325,6 +329,8 @@ void renew_rows(const RowSource<Real>& source, const QuadArray<Real>& anchor,
   making.made = true;
   rows.in_slabs = false;
   take_over_rows(source.x, parts, making, rows, profile);
+  std::erase_if(making.jammed,
+                [&rows](const JammedPair& pair) { return !has_row(rows, pair.first, pair.key); });
 }
 
 template <class Real>
@@ -334,7 +340,7 @@ void add_arrived(const RowSource<Real>& source, GuardedPairs<Real>& pairs, RowMa
   const StageTimer timer(profile, Stage::narrow_phase, pairs.arrived.size());
   for (const GuardedPair<Real>& pair : pairs.arrived) {
     GuardRow<Real> row;
-    if (has_row(rows, pair)) continue;
+    if (has_row(rows, pair.particle[0], key_of(pair))) continue;
     if (!make_row(source, making, pair, separate_pair(pair.kind, points_of(pair, source.x)), row))
       continue;
     const auto number = static_cast<Index>(rows.all.size());
@@ -367,7 +373,7 @@ void turn_rows(const RowSource<Real>& source, RowMaking<Real>& making, RowSet<Re
   }
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(turn_rows, row_making, place_new_particles, find_moved, renew_rows,
-                           add_arrived)
+WEFT_INSTANTIATE_FUNCTIONS(turn_rows, note_jammed, row_making, place_new_particles, find_moved,
+                           renew_rows, add_arrived)
 
 }  // namespace weft

@@ -11,6 +11,7 @@
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/pair_separation.h"
 #include "core/contact/guard/row_set.h"
+#include "core/contact/guard/stopped_particles.h"
 #include "core/executor.h"
 #include "core/profile.h"
 #include "core/types.h"
@@ -23,8 +24,10 @@ namespace weft {
 template <class Real>
 struct RowSource {
   const GuardedCloths<Real>& cloths;
-  const ClothState<Real>& state;  ///< its velocities and inverse masses
-  const QuadArray<Real>& x;       ///< positions [m]
+  const ClothState<Real>& state;          ///< its velocities and inverse masses
+  const QuadArray<Real>& x;               ///< positions [m]
+  Real smallest_gap;                      ///< that certificates leave [m]
+  const std::vector<JammedPair>& jammed;  ///< see RowMaking
 };
 
 /// What one part of making or turning rows needs, and the rows that it made of each kind.
@@ -38,15 +41,16 @@ struct RowPart {
 /// When and where rows were made, and what was dropped in exchange.
 template <class Real>
 struct RowMaking {
-  bool made = false;              ///< rows exist for all near pairs
-  Real time = 0;                  ///< since all were examined more closely [s]
-  int steps = 0;                  ///< since all were made
-  QuadArray<Real> x;              ///< when the rows of each particle were made [m]
-  std::vector<Index> moved;       ///< particles whose rows have to be made anew
-  std::vector<char> is_moved;     ///< of each particle
-  std::vector<Index> passed;      ///< particles over the border of a triangle that carries them
-  std::vector<Real> off_anchor;   ///< distance of each particle from its anchor [m]
-  std::vector<Index> candidates;  ///< pairs of the particles that have moved
+  bool made = false;               ///< rows exist for all near pairs
+  Real time = 0;                   ///< since all were examined more closely [s]
+  int steps = 0;                   ///< since all were made
+  QuadArray<Real> x;               ///< when the rows of each particle were made [m]
+  std::vector<Index> moved;        ///< particles whose rows have to be made anew
+  std::vector<char> is_moved;      ///< of each particle
+  std::vector<Index> passed;       ///< particles over the border of a triangle that carries them
+  std::vector<JammedPair> jammed;  ///< pairs that may have rows as they are jammed, by their keys
+  std::vector<Real> off_anchor;    ///< distance of each particle from its anchor [m]
+  std::vector<Index> candidates;   ///< pairs of the particles that have moved
   std::vector<RowPart<Real>> parts;
   std::vector<GuardRow<Real>> old_rows;                   ///< dropped; impulses are taken over
   std::vector<std::pair<std::uint64_t, Index>> old_keys;  ///< theirs, ascending
@@ -67,6 +71,11 @@ bool is_time_to_look(const RowMaking<Real>& making) {
 template <class Real>
 void place_new_particles(const GuardedPairs<Real>& pairs, std::size_t first,
                          const QuadArray<Real>& x, RowMaking<Real>& making);
+
+/// Notes pairs that are jammed, whose rows then are made anew.
+/// @param found  in the last step
+template <class Real>
+void note_jammed(const std::vector<JammedPair>& found, RowMaking<Real>& making);
 
 /// Lists the particles whose rows have to be made anew.
 /// @return whether there are any

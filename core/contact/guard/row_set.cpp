@@ -46,9 +46,8 @@ void add_row(const GuardRow<Real>& row, RowSet<Real>& rows) {
 }
 
 template <class Real>
-bool has_row(const RowSet<Real>& rows, const GuardedPair<Real>& pair) {
-  const std::uint64_t key = key_of(pair);
-  Index r = rows.first[at_index(pair.particle[0])];
+bool has_row(const RowSet<Real>& rows, Index first, std::uint64_t key) {
+  Index r = rows.first[at_index(first)];
   assert(r == kNone || at_index(r) < rows.all.size());
   while (r != kNone && rows.all[at_index(r)].key != key) r = rows.next[at_index(r)];
   return r != kNone;

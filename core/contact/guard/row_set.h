@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/contact/guard/guard_row.h"
@@ -46,8 +47,9 @@ template <class Real>
 void add_row(const GuardRow<Real>& row, RowSet<Real>& rows);
 
 /// Whether a pair has a row.
+/// @param first  its first particle
 template <class Real>
-bool has_row(const RowSet<Real>& rows, const GuardedPair<Real>& pair);
+bool has_row(const RowSet<Real>& rows, Index first, std::uint64_t key);
 
 // ---- implementation ----
 

@@ -55,6 +55,7 @@ void note_stopped(Index particle, const Vec3<Real>& v, const Vec3<Real>& v_drift
 template <class Real>
 void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v) {
   stopped.any = !stopped.list.empty();
+  stopped.jammed.clear();
   ++stopped.step;
   for (const StoppedParticle<Real>& one : stopped.list) {
     const auto i = at_index(one.particle);
@@ -65,6 +66,14 @@ void give_velocities_back(StoppedParticles<Real>& stopped, Vec3Array<Real>& v) {
     stopped.place_of[i] = kNone;
   }
   stopped.list.clear();
+  for (const StoppedPair<Real>& pair : stopped.pairs) {
+    const auto is_jammed = [&stopped](Index k) {
+      const StopsInARow& row = stopped.in_a_row[at_index(k)];
+      return row.step == stopped.step && row.count > kMostInARow;
+    };
+    if (std::any_of(pair.particle.begin(), pair.particle.end(), is_jammed))
+      stopped.jammed.push_back({pair.key, pair.particle[0]});
+  }
 }
 
 template <class Real>
@@ -101,6 +110,7 @@ void forget_stopped(StoppedParticles<Real>& stopped) {
     stopped.place_of[at_index(one.particle)] = kNone;
   stopped.list.clear();
   stopped.pairs.clear();
+  stopped.jammed.clear();
   stopped.any = false;
   stopped.step += 2;  // no row goes on
 }

@@ -18,6 +18,13 @@ struct StoppedPair {
   std::array<Index, 4> particle = {0, 0, 0, 0};
   std::array<Real, 4> weight = {0, 0, 0, 0};  ///< of the closest points, as PairSeparation has it
   Vec3<Real> normal = Vec3<Real>::Zero();     ///< from the second side to the first
+  std::uint64_t key = 0;
+};
+
+/// A pair that was stopped in so many steps that its particles are jammed.
+struct JammedPair {
+  std::uint64_t key = 0;
+  Index first = 0;  ///< its first particle
 };
 
 /// A particle that goes less far in the coming drift than its velocity says.
@@ -38,8 +45,8 @@ struct StopsInARow {
 /// no other particle gets, also along the contact and from what both sides have in common; so each
 /// particle gets its velocity back after the drift, and then the pairs at whose planes it stopped
 /// take their approach from each other. Only what is jammed, and stopped in kMostInARow steps
-/// before, loses it: it would press on for ever. Where nothing but cloth is near, all particles
-/// alike get what the centre of mass has lost by that.
+/// before, loses it: it would press on for ever, and its pair gets a row. Where nothing but cloth
+/// is near, all particles alike get what the centre of mass has lost by that.
 template <class Real>
 struct StoppedParticles {
   std::vector<StoppedParticle<Real>> list;
@@ -47,7 +54,8 @@ struct StoppedParticles {
   std::vector<StopsInARow> in_a_row;  ///< of each particle
   std::uint64_t step = 2;             ///< the one that ended last
   std::vector<StoppedPair<Real>> pairs;
-  bool any = false;  ///< something was stopped in the last step
+  std::vector<JammedPair> jammed;  ///< in the last step
+  bool any = false;                ///< something was stopped in the last step
 };
 
 /// @param particles  number of all
