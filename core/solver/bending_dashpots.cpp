@@ -70,6 +70,16 @@ void BendingDashpots<Real>::prepare(const ClothModel<Real>& model) {
 }
 
 template <class Real>
+DashpotPasses BendingDashpots<Real>::passes(const ClothModel<Real>& model, double seconds) const {
+  DashpotPasses most;
+  for (const Part& part : parts_) {
+    const DashpotPasses needed = dashpot_passes(model.parts[part.number], seconds);
+    if (needed.count > most.count || (needed.count == most.count && !needed.even)) most = needed;
+  }
+  return most;
+}
+
+template <class Real>
 int BendingDashpots<Real>::stages(const ClothModel<Real>& model, double seconds) const {
   assert(seconds > 0);
   int most = 0;
@@ -89,6 +99,8 @@ double BendingDashpots<Real>::longest_time(const ClothModel<Real>& model, std::s
 
 template <class Real>
 double BendingDashpots<Real>::updates(const ClothModel<Real>& model, double seconds) const {
+  const DashpotPasses times = passes(model, seconds);
+  const double longest = seconds * longest_share(times);
   double most = 0;
   for (const Part& part : parts_) {
     const ClothPart<Real>& cloth = model.parts[part.number];
@@ -96,7 +108,7 @@ double BendingDashpots<Real>::updates(const ClothModel<Real>& model, double seco
     for (const DashpotFamily<Real>& family : part.families)
       numbers += static_cast<double>(family.batches * family.kLanes * family.slots);
     const double a_stage = kDashpotUpdates * numbers / static_cast<double>(cloth.particles.count);
-    most = std::max(most, stages_of(cloth, seconds) * a_stage);
+    most = std::max(most, times.count * stages_of(cloth, longest) * a_stage);
   }
   return most;
 }

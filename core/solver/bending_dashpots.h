@@ -9,25 +9,26 @@
 #include "core/math/quad.h"
 #include "core/profile.h"
 #include "core/solver/dashpot_kernels.h"
+#include "core/solver/dashpot_passes.h"
 #include "core/solver/held_forces.h"
 
-// Dashpots of quadratic bending, which act between ticks.
+// Dashpots of quadratic bending, which act between substeps.
 
 namespace weft {
 
-/// Dashpots of quadratic bending between two ticks. A stencil's value c = sum w x is damped along
-/// the cloth's normal N at its place: b = N . c, the curvature, is a function of the positions that
-/// no motion of the whole changes, and its dashpot's force on a particle is -tau k db/dt times the
-/// gradient of b there. So momentum and angular momentum are kept. (Along c itself a flat cloth
-/// would be damped in whatever direction the strains in its plane give c; along all of dc/dt a bent
-/// cloth would resist turning as a whole.)
+/// Dashpots of quadratic bending, which act a few times in a tick (dashpot_passes.h). A stencil's
+/// value c = sum w x is damped along the cloth's normal N at its place: b = N . c, the curvature,
+/// is a function of the positions that no motion of the whole changes, and its dashpot's force on a
+/// particle is -tau k db/dt times the gradient of b there. So momentum and angular momentum are
+/// kept. (Along c itself a flat cloth would be damped in whatever direction the strains in its
+/// plane give c; along all of dc/dt a bent cloth would resist turning as a whole.)
 ///
-/// Over a tick of length D they solve dv/dt = -M^-1 K v, K = sum tau k g g^T, by a stabilised
-/// explicit method: the second order one of Runge, Kutta and Legendre (Meyer, Balsara, Aslam 2014,
-/// eqs. 16 to 18). Its s stages are stable for D rho <= (s^2 + s - 2) / 2 with rho the largest
-/// rate, so their number grows as the root of the relaxation time, where substeps grow as itself.
-/// Slow modes decay by tau omega^2, to second order in D tau omega^2; the fastest lose half of
-/// their velocity in a tick.
+/// Over the time D since the last pass they solve dv/dt = -M^-1 K v, K = sum tau k g g^T, by a
+/// stabilised explicit method: the second order one of Runge, Kutta and Legendre (Meyer, Balsara,
+/// Aslam 2014, eqs. 16 to 18). Its s stages are stable for D rho <= (s^2 + s - 2) / 2 with rho the
+/// largest rate, so their number grows as the root of the relaxation time, where substeps grow as
+/// itself. Slow modes decay by tau omega^2, to second order in D tau omega^2; the fastest lose half
+/// of their velocity in a pass.
 template <class Real>
 class BendingDashpots {
  public:
@@ -36,12 +37,14 @@ class BendingDashpots {
 
   bool empty() const { return parts_.empty(); }
 
+  /// When they act in a tick of so many seconds: as the part needs that needs most.
+  DashpotPasses passes(const ClothModel<Real>& model, double seconds) const;
   /// Most stages that a part takes over some time [s]: odd, at least 3; 0 if no part damps bending.
   int stages(const ClothModel<Real>& model, double seconds) const;
   /// Longest relaxation time that a part may have [s]: with kMostDashpotStages.
   double longest_time(const ClothModel<Real>& model, std::size_t part, double seconds) const;
-  /// Estimated work, in updates of a particle by the springs of a grid [1], of the part that takes
-  /// most.
+  /// Estimated work of a tick of so many seconds, in updates of a particle by the springs of a grid
+  /// [1], of the part that takes most.
   double updates(const ClothModel<Real>& model, double seconds) const;
 
   /// Damps the velocities of all parts that are awake, over some time. Throws Stopped.

@@ -40,6 +40,18 @@ inline constexpr double kCalmClearance = 0.999;
 
 // Dashpots of bending.
 
+/// Most that the fastest bending of a mesh may turn in its phase between two passes [rad]; at pi it
+/// would not be damped. Larger: it nearly is not. Smaller: more passes.
+inline constexpr double kMostBetweenPasses = 2.8;
+
+/// Faster bending is not followed swing by swing [rad/s]: 200 Hz. Larger: more passes on fine
+/// meshes at high tick rates. Smaller: waves of few centimetres may lose a quarter of their law.
+inline constexpr double kFastestBending = 1257;
+
+/// A group of three passes takes at most this long, rounding included [s]. Larger: in slow ticks the
+/// dashpots see less of what swings. Smaller: more passes.
+inline constexpr double kGroupSeconds = 1.001 / 60;
+
 /// Most that the turning of the normal adds to the gradient of a curvature, over what bending gives
 /// it [1]; where it is more, cloth is crumpled. Larger: more stages everywhere. Smaller: cloth that
 /// is stretched unevenly is not damped.

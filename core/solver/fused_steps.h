@@ -38,7 +38,7 @@ struct NextCalm {
 /// Steps without calls of contact while no particle can meet anything: all stay near straight paths
 /// that the guard has found to be clear (CalmPaths), and no particle moves as far as the nearest
 /// object. Leaves the same state as contact would, bit for bit.
-/// @param substeps  of the tick
+/// @param substeps  of the call
 /// @param s         first substep, before its kick; advanced to the first that is not done
 /// @returns work of the air [J]
 template <class Real>

@@ -339,30 +339,28 @@ EnergyReading timed_energies(Tick<Real>& tick) {
 template <class Real>
 AdvanceResult advance_relaxation(const ClothModel<Real>& model,
                                  const Surroundings<Real>& surroundings,
-                                 const RelaxationDef& solver, double dt, int substeps,
-                                 Grabs<Real>& grabs, const Collision<Real>& collision,
-                                 ClothState<Real>& state, RelaxationWorkspace<Real>& work,
-                                 Profile& profile) {
-  assert(dt > 0 && substeps >= 1 && solver.sweeps >= 1);
+                                 const RelaxationDef& solver, double dt,
+                                 const SubstepRange& substeps, Grabs<Real>& grabs,
+                                 const Collision<Real>& collision, ClothState<Real>& state,
+                                 RelaxationWorkspace<Real>& work, Profile& profile) {
+  assert(dt > 0 && substeps.count() >= 1 && substeps.end <= substeps.all && solver.sweeps >= 1);
   assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
   assert(state.inverse_mass.size() == model.mass.size());
   assert(work.force.size() == model.mass.size() && work.grids.size() == model.parts.size());
   Tick<Real> tick{model, surroundings, solver, static_cast<Real>(dt), grabs, collision,
                   state, work,         profile};
-  tick.keeps = std::pow(1 - solver.damping, 1.0 / substeps);
+  tick.keeps = std::pow(1 - solver.damping, 1.0 / substeps.all);
   AdvanceResult result;
-  result.before = timed_energies(tick).energies;
+  if (substeps.opens()) result.before = timed_energies(tick).energies;
   const auto softness = static_cast<Real>(solver.compliance / (dt * dt));
   for (GridRelaxation<Real>& grid : work.grids) {
     if (tick.compliant() && grid.fits()) grid.set_masses(state.inverse_mass, softness);
   }
-  if (rows_alone(tick)) {
-    advance_rows(tick, substeps);
-    substeps = 0;
-  }
+  const bool alone = rows_alone(tick);
+  if (alone) advance_rows(tick, substeps.count());
   see_velocities(state.v, grabs);
-  for (int s = 0; s < substeps; ++s) {
-    const auto count = static_cast<Real>(substeps);
+  for (int s = substeps.first; !alone && s < substeps.end; ++s) {
+    const auto count = static_cast<Real>(substeps.all);
     stop_point();
     collision.before_kick(state);
     if (collision.meter) collision.meter->begin(state);
@@ -378,17 +376,18 @@ AdvanceResult advance_relaxation(const ClothModel<Real>& model,
     collision.meter->finish(model, state, collision.objects, collision.guard != nullptr, tick.dt);
     collision.meter->add({.hands = pulled});
   }
+  if (!substeps.closes()) return result;
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;
   result.largest_strain = end.largest_strain;
   return result;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                                  \
-  template AdvanceResult advance_relaxation(const ClothModel<Real>&, const Surroundings<Real>&, \
-                                            const RelaxationDef&, double, int, Grabs<Real>&,    \
-                                            const Collision<Real>&, ClothState<Real>&,          \
-                                            RelaxationWorkspace<Real>&, Profile&);
+#define WEFT_INSTANTIATE(Real)                                                          \
+  template AdvanceResult advance_relaxation(                                            \
+      const ClothModel<Real>&, const Surroundings<Real>&, const RelaxationDef&, double, \
+      const SubstepRange&, Grabs<Real>&, const Collision<Real>&, ClothState<Real>&,     \
+      RelaxationWorkspace<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -66,7 +66,7 @@ struct RelaxationWorkspace {
   void prepare(const ClothModel<Real>& model);
 };
 
-/// One tick of the seed's solver (H.-H. Cheng). A substep predicts by eq. (5),
+/// Substeps of a tick by the seed's solver (H.-H. Cheng). A substep predicts by eq. (5),
 ///   x' = x + (1 - c)(x - x_before) + dt^2 f/m,
 /// where x - x_before = v dt and f contains gravity, air, hands and bending. Then it sweeps over
 /// all springs (Provot 1995) and moves both ends of each by half of the excess length; a pinned end
@@ -81,13 +81,13 @@ struct RelaxationWorkspace {
 /// the positions; on grids they run row by row in colours (grid_relaxation.h).
 ///
 /// @param dt        substep [s]
-/// @param substeps  at least 1
+/// @param substeps  at least one
 template <class Real>
 AdvanceResult advance_relaxation(const ClothModel<Real>& model,
                                  const Surroundings<Real>& surroundings,
-                                 const RelaxationDef& solver, double dt, int substeps,
-                                 Grabs<Real>& grabs, const Collision<Real>& collision,
-                                 ClothState<Real>& state, RelaxationWorkspace<Real>& work,
-                                 Profile& profile);
+                                 const RelaxationDef& solver, double dt,
+                                 const SubstepRange& substeps, Grabs<Real>& grabs,
+                                 const Collision<Real>& collision, ClothState<Real>& state,
+                                 RelaxationWorkspace<Real>& work, Profile& profile);
 
 }  // namespace weft

@@ -240,15 +240,15 @@ void opening_kick(Tick<Real>& tick, const Kick<Real>& k) {
   meter_kick(tick, k);
 }
 
-/// Pulls of the hands, after the kick before substep `s` of `substeps`.
+/// Pulls of the hands, after the kick before number `s` of `substeps`.
 template <class Real>
-void pull(Tick<Real>& tick, const Kick<Real>& k, int s, int substeps) {
+void pull(Tick<Real>& tick, const Kick<Real>& k, int s, const SubstepRange& substeps) {
   if (!tick.has_hands) return;
-  assert(s >= 0 && s <= substeps);
+  assert(s >= 0 && s <= substeps.count());
   const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
-  const auto count = static_cast<Real>(substeps);
-  pull_by_hand({static_cast<Real>(s) / count, 1 / (tick.dt * count), tick.dt}, k.scaled_dt,
-               tick.state, tick.grabs);
+  const auto count = static_cast<Real>(substeps.all);
+  pull_by_hand({static_cast<Real>(substeps.first + s) / count, 1 / (tick.dt * count), tick.dt},
+               k.scaled_dt, tick.state, tick.grabs);
   if (tick.collision.meter) tick.collision.meter->pulled(tick.state.v);
   if (tick.collision.held) tick.collision.held->pull(tick.grabs, k.seconds);
 }
@@ -262,21 +262,21 @@ void meter_drift(const Tick<Real>& tick, Real seconds) {
                     static_cast<double>(seconds));
 }
 
-/// The substeps of a tick in which hands or contact act between kick and drift, or work is metered.
+/// Substeps in which hands or contact act between kick and drift, or work is metered.
 /// @param blow_up  receives the motion that ended the tick before contact saw it
 /// @returns work of hands and air [J]
 template <class Real>
-double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps,
+double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, const SubstepRange& substeps,
                         std::optional<BlowUp>& blow_up) {
   ClothState<Real>& state = tick.state;
   const Collision<Real>& collision = tick.collision;
   double work = 0;
   see_velocities(state.v, tick.grabs);
   NextCalm next;
-  for (int s = 0; s < substeps; ++s) {
+  for (int s = 0; s < substeps.count(); ++s) {
     stop_point();
-    work += advance_calm(tick, kicks, substeps, s, next);
-    if (s == substeps) break;
+    work += advance_calm(tick, kicks, substeps.count(), s, next);
+    if (s == substeps.count()) break;
     collision.before_kick(state);
     if (collision.meter) collision.meter->begin(state);
     if (s == 0)
@@ -297,7 +297,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, int substeps
   collision.before_kick(state);
   if (collision.meter) collision.meter->begin(state);
   swept_kick(tick, kicks.closing, Real(1));
-  pull(tick, kicks.closing, substeps, substeps);
+  pull(tick, kicks.closing, substeps.count(), substeps);
   collision.settle(state, tick.dt, tick.profile);
   meter_drift(tick, Real(0));
   work += work_of_hands(state.v, tick.grabs);
@@ -336,10 +336,12 @@ EnergyReading timed_energies(Tick<Real>& tick) {
 
 template <class Real>
 AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
-                             const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
-                             const Collision<Real>& collision, ClothState<Real>& state,
-                             VerletWorkspace<Real>& work, Profile& profile) {
-  assert(dt > 0 && substeps >= 1 && solver.damping_sweeps >= 1);
+                             const SolverDef& solver, double dt, const SubstepRange& substeps,
+                             Grabs<Real>& grabs, const Collision<Real>& collision,
+                             ClothState<Real>& state, VerletWorkspace<Real>& work,
+                             Profile& profile) {
+  assert(dt > 0 && substeps.count() >= 1 && substeps.end <= substeps.all);
+  assert(solver.damping_sweeps >= 1);
   assert(state.x.size() == model.mass.size() && state.v.size() == model.mass.size());
   assert(state.inverse_mass.size() == model.mass.size());
   assert(work.grids.size() == model.parts.size() && "prepared for this model");
@@ -360,30 +362,32 @@ AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<R
   }
   std::fill(work.remainder.begin(), work.remainder.end(), Vec3<Real>::Zero());
   load_grids(tick);
-  result.before = timed_energies(tick).energies;
+  if (substeps.opens()) result.before = timed_energies(tick).energies;
   if (collision.empty() && !collision.meter && !has_hands && work.all_grids &&
       solver.damping_sweeps == 1) {
     for (std::size_t p = 0; p < tick.parts(); ++p) {
       if (!tick.sleeps(p))
-        result.work += advance_alone(tick, p, kicks, substeps);
+        result.work += advance_alone(tick, p, kicks, substeps.count());
       else if (collision.held)
-        collision.held->act(p, surroundings, state.x, state.v, dt * substeps);
+        collision.held->act(p, surroundings, state.x, state.v, dt * substeps.count());
     }
   } else {
     result.work = advance_together(tick, kicks, substeps, result.blow_up);
   }
   if (result.blow_up) return result;
   work.elastic.reset();
+  if (!substeps.closes()) return result;
   const EnergyReading end = timed_energies(tick);
   result.after = end.energies;
   result.largest_strain = end.largest_strain;
   return result;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                           \
-  template AdvanceResult advance_verlet(                                                 \
-      const ClothModel<Real>&, const Surroundings<Real>&, const SolverDef&, double, int, \
-      Grabs<Real>&, const Collision<Real>&, ClothState<Real>&, VerletWorkspace<Real>&, Profile&);
+#define WEFT_INSTANTIATE(Real)                                                                   \
+  template AdvanceResult advance_verlet(const ClothModel<Real>&, const Surroundings<Real>&,      \
+                                        const SolverDef&, double, const SubstepRange&,           \
+                                        Grabs<Real>&, const Collision<Real>&, ClothState<Real>&, \
+                                        VerletWorkspace<Real>&, Profile&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)
 #undef WEFT_INSTANTIATE

@@ -46,6 +46,17 @@ void visit_fields_of_solver(Def& s, Visitor&& visit) {
         s.damping_sweeps);
 }
 
+/// The substeps of a tick that one call of a solver makes: all of them, or those between two passes
+/// of the dashpots of bending. Each call ends with positions and velocities of one instant.
+struct SubstepRange {
+  int first = 0, end = 1;  ///< of `all`
+  int all = 1;             ///< of the tick
+
+  int count() const { return end - first; }
+  bool opens() const { return first == 0; }
+  bool closes() const { return end == all; }
+};
+
 /// External influences on the cloth during one tick.
 template <class Real>
 struct Surroundings {
@@ -57,11 +68,12 @@ struct Surroundings {
   Vec3d gusts_ahead = Vec3d::Zero();        ///< of where the mean wind alone carries them [m]
 };
 
-/// Result of one tick of a solver.
+/// Result of some substeps of a solver.
 struct AdvanceResult {
-  Energies before, after;
-  double work = 0;            ///< of hands and air over the tick [J]
-  double largest_strain = 0;  ///< at the end
+  Energies before;            ///< if these open the tick
+  Energies after;             ///< if they close it
+  double work = 0;            ///< of hands and air [J]
+  double largest_strain = 0;  ///< at the end of the tick
   int damped_substeps = 0;    ///< that `implicit` had to repeat by backward Euler
   /// Why the tick ended early; then only `before` above is valid.
   std::optional<BlowUp> blow_up;
@@ -112,20 +124,21 @@ struct VerletWorkspace {
   std::size_t bytes() const;
 };
 
-/// Leapfrog over one tick (Verlet 1967), with half a kick at its start and its end, so that
-/// positions and velocities are synchronous at the tick's end. Velocity is a separate variable,
-/// because position-only Verlet loses float precision at small steps; positions are summed with
-/// what rounding took from them in the same tick (drift-inl.h), as slow cloth with many substeps
-/// would stand still. Damping is split exactly: v
+/// Leapfrog over substeps of a tick (Verlet 1967), with half a kick at their start and their end,
+/// so that positions and velocities are synchronous then. Velocity is a separate variable, because
+/// position-only Verlet loses float precision at small steps; positions are summed with what
+/// rounding took from them in the same tick (drift-inl.h), as slow cloth with many substeps would
+/// stand still. Damping is split exactly: v
 /// <- [v (1 - a dt/2) + dt f/m]/(1 + a dt/2). Contact corrects the velocities between each kick and
 /// drift; the seed's contact also corrects positions after it.
 ///
 /// @param dt        substep [s], stable by stability_bound.h
-/// @param substeps  at least 1
+/// @param substeps  at least one
 template <class Real>
 AdvanceResult advance_verlet(const ClothModel<Real>& model, const Surroundings<Real>& surroundings,
-                             const SolverDef& solver, double dt, int substeps, Grabs<Real>& grabs,
-                             const Collision<Real>& collision, ClothState<Real>& state,
-                             VerletWorkspace<Real>& work, Profile& profile);
+                             const SolverDef& solver, double dt, const SubstepRange& substeps,
+                             Grabs<Real>& grabs, const Collision<Real>& collision,
+                             ClothState<Real>& state, VerletWorkspace<Real>& work,
+                             Profile& profile);
 
 }  // namespace weft

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cassert>
 #include <optional>
+#include <utility>
 
 #include "core/contact/colliders/collider_plan.h"
 #include "core/error.h"
@@ -12,6 +13,7 @@
 #include "core/geometry/ray_cast.h"
 #include "core/solver/bending_kick.h"
 #include "core/solver/constants.h"
+#include "core/solver/dashpot_passes.h"
 #include "core/stop_signal.h"
 #include "core/world/constants.h"
 #include "core/world/model_of.h"
@@ -312,7 +314,21 @@ Collision<Real> World<Real>::collision() {
           held};
 }
 
-/// One tick of the chosen solver.
+/// Substeps of the chosen solver.
+template <class Real>
+AdvanceResult World<Real>::advance_some(SolverKind kind, double dt, const SubstepRange& substeps) {
+  if (kind == SolverKind::verlet)
+    return advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
+                          state_, solvers_.verlet, report_.profile);
+  if (kind == SolverKind::relaxation)
+    return advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
+                              collision(), state_, solvers_.relaxation, report_.profile);
+  assert(substeps.opens() && substeps.closes() && "its substeps need those before");
+  return advance_implicit(model_, surroundings_, def_.implicit, dt, substeps.all, grabs_,
+                          collision(), state_, solvers_.implicit, report_.profile);
+}
+
+/// One tick of the chosen solver, with the passes of the dashpots of bending.
 template <class Real>
 AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
   assert(kind != SolverKind::automatic && substeps >= 1);
@@ -324,41 +340,40 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
   if (contact_.guard) contact_.guard->begin_tick();
   if (energy_) energy_->meter.begin_tick();
   if (supports_.wanted) supports_.held.begin_tick(model_, pins_);
-  AdvanceResult result =
-      kind == SolverKind::verlet
-          ? advance_verlet(model_, surroundings_, def_.solver, dt, substeps, grabs_, collision(),
-                           state_, solvers_.verlet, report_.profile)
-      : kind == SolverKind::implicit
-          ? advance_implicit(model_, surroundings_, def_.implicit, dt, substeps, grabs_,
-                             collision(), state_, solvers_.implicit, report_.profile)
-          : advance_relaxation(model_, surroundings_, def_.relaxation, dt, substeps, grabs_,
-                               collision(), state_, solvers_.relaxation, report_.profile);
+  AdvanceResult result;
+  DashpotPasses passes;
+  if (kind != SolverKind::implicit)
+    passes = solvers_.dashpots.passes(model_, tick_seconds()).times(refinement_);
+  for (SubstepRange some{0, 0, substeps}; !some.closes() && !result.blow_up;) {
+    some = next_range(some, passes);
+    const AdvanceResult before = std::exchange(result, advance_some(kind, dt, some));
+    if (!some.opens()) result.before = before.before;
+    result.work += before.work;
+    damp_bending(kind, dt, some, result);
+  }
   result.work += contact_.objects.work() + pin_drive_.work();
   if (contact_.guard) {
     result.work += contact_.guard->work();
     contact_.guard->end_tick();
   }
-  const bool lags = kind == SolverKind::relaxation && !solvers_.dashpots.empty();
-  if (lags) kick_by_bending(model_, dt / 2, solvers_.relaxation.force, state_);
-  damp_bending(kind, result);
-  if (!lags) return result;
-  kick_by_bending(model_, -dt / 2, solvers_.relaxation.force, state_);
-  if (!result.blow_up) result.after.kinetic = kinetic_energy(model_, state_);
   return result;
 }
 
-/// Lets the dashpots of bending act.
+/// Lets the dashpots of bending act for the time of some substeps.
 template <class Real>
-void World<Real>::damp_bending(SolverKind kind, AdvanceResult& result) {
+void World<Real>::damp_bending(SolverKind kind, double dt, const SubstepRange& after,
+                               AdvanceResult& result) {
   if (solvers_.dashpots.empty() || result.blow_up) return;
-  const double before = kinetic_energy(model_, state_);
-  solvers_.dashpots.act(model_, tick_seconds(), state_,
+  const bool lags = kind == SolverKind::relaxation;
+  if (lags) kick_by_bending(model_, dt / 2, solvers_.relaxation.force, state_);
+  const double before = energy_ ? kinetic_energy(model_, state_) : 0;
+  solvers_.dashpots.act(model_, dt * after.count(), state_,
                         supports_.wanted ? &supports_.held : nullptr, runtime_.executor,
                         report_.profile);
-  const double lost = before - kinetic_energy(model_, state_);
+  if (energy_) energy_->meter.add({.damping = before - kinetic_energy(model_, state_)});
   if (kind == SolverKind::implicit) solvers_.implicit.take_over(state_.v);
-  result.after.kinetic -= lost;
-  if (energy_) energy_->meter.add({.damping = lost});
+  if (lags) kick_by_bending(model_, -dt / 2, solvers_.relaxation.force, state_);
+  if (after.closes()) result.after.kinetic = kinetic_energy(model_, state_);
 }
 
 template <class Real>

@@ -259,8 +259,7 @@ class World {
   const Contact<Real>& contact() const { return contact_.objects; }
   /// Contact of cloths with themselves and each other; null without it.
   const ClothGuard<Real>* guard() const { return contact_.guard ? &*contact_.guard : nullptr; }
-  /// Which cloths sleep, if the scene permits it (SleepDef). Anything that acts on a cloth wakes
-  /// it.
+  /// Which cloths sleep, if the scene permits it (SleepDef); what acts on a cloth wakes it.
   const Sleep<Real>& sleep() const { return sleep_; }
   std::uint64_t tick() const { return tick_; }
   double tick_seconds() const { return 1 / def_.tick_rate; }
@@ -316,7 +315,8 @@ class World {
   bool leaves_to_verlet(const AdvanceResult& result, int substeps);
   void advance_or_recover(int substeps);
   AdvanceResult advance(SolverKind kind, int substeps);
-  void damp_bending(SolverKind kind, AdvanceResult& result);
+  AdvanceResult advance_some(SolverKind kind, double dt, const SubstepRange& substeps);
+  void damp_bending(SolverKind kind, double dt, const SubstepRange& after, AdvanceResult& result);
   Collision<Real> collision();
   std::optional<Divergence> examine(const AdvanceResult& result, SolverKind kind,
                                     int substeps) const;

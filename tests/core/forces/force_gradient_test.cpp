@@ -53,7 +53,7 @@ Vec3Array<double> force_on(const ClothModel<double>& model, const Vec3Array<doub
   work.prepare(model, solver, nullptr);
   Grabs<double> no_hands;
   Profile profile;
-  advance_verlet<double>(model, {}, solver, kInstant, 1, no_hands, {}, state, work, profile);
+  advance_verlet<double>(model, {}, solver, kInstant, {}, no_hands, {}, state, work, profile);
   Vec3Array<double> force;
   for (std::size_t i = 0; i < x.size(); ++i)
     force.push_back(state.v[i] * (model.mass[i] / kInstant));
