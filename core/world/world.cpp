@@ -122,7 +122,8 @@ void World<Real>::build_contact() {
   const bool something_to_meet = !def_.colliders.empty() || def_.contact.seed.has_self_contact();
   if (contact_of(def_) == ContactModel::seed && something_to_meet)
     contact_.seed.emplace(def_.contact.seed, model_, def_.colliders);
-  if (has_guard(def_)) contact_.guard.emplace(model_, runtime_.executor);
+  if (has_guard(def_))
+    contact_.guard.emplace(model_, runtime_.executor).log_forces(supports_.wanted);
 }
 
 template <class Real>

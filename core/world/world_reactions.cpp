@@ -14,6 +14,7 @@ template <class Real>
 void World<Real>::measure_forces(bool wanted) {
   supports_.wanted = wanted;
   contact_.objects.log_impulses(wanted, energy_.has_value());
+  if (contact_.guard) contact_.guard->log_forces(wanted);
   // No tick of a resting world will measure them.
   if (wanted && !supports_.told && rests()) supports_.told = coming_reactions();
 }
@@ -52,7 +53,7 @@ void World<Real>::take_reactions() {
   }
   if (contact_.seed) found.colliders.clear();  // it moves the cloth without telling its impulses
   if (contact_.guard) {
-    for (const ContactPoint& contact : contacts_of(*contact_.guard, state_.x))
+    for (const ContactPoint& contact : contacts_of(*contact_.guard, state_.x, tick_seconds()))
       found.contacts.push_back(contact);
   }
   if (solver_of(def_) != SolverKind::relaxation)

@@ -47,19 +47,6 @@ void open_touching(std::size_t first, bool unseen, const QuadArray<Real>& x, Rea
 // What a reset forgets keeps its memory, so that no step after it allocates.
 
 template <class Real>
-void forget(RowMaking<Real>& making) {
-  making.made = false;
-  making.passed.clear();
-  making.jammed.clear();
-  std::fill(making.is_moved.begin(), making.is_moved.end(), 0);
-  for (RowPart<Real>& part : making.parts) {
-    part.columns.clear();
-    part.passed.clear();
-    for (std::vector<GuardRow<Real>>& rows : part.rows) rows.clear();
-  }
-}
-
-template <class Real>
 void forget(Regions<Real>& regions) {
   regions.sizes.assign(regions.sizes.size(), Quad<Real>{{0, 0, -1, 0}});
   regions.dirty.clear();
@@ -110,7 +97,7 @@ void ClothGuard<Real>::reset() {
   phase_ = GuardPhase::between_steps;
   paths_.collected = false;
   forget_found(search_);
-  forget(making_);
+  forget_made(making_);
   forget(regions_);
   forget_critical(critical_);
   forget_rows(rows_);
@@ -147,8 +134,11 @@ template <class Real>
 void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
   assert(phase_ == GuardPhase::between_steps && dt > 0);
   phase_ = GuardPhase::solved;
+  note_settled();
   const Real kicked = std::exchange(settled_, false) ? dt / 2 : dt;
   calm_.calm = pairs_.active.empty() && open_pairs() == 0;
+  const bool looks = calm_.calm || !making_.made || (making_.steps + 1) % kStepsBetweenLooks == 0;
+  if (log_.wanted && looks) rows_.deals.log_pushes(rows_.all, log_);
   if (calm_.calm) {
     calm_.x_before = state.x;
     forget_rows(rows_);
@@ -231,6 +221,8 @@ bool ClothGuard<Real>::finish(ClothState<Real>& state, bool keeps_velocity) {
   give_velocities_back(stopped_, state.v);
   take_back_push(push_, state.v);
   meet_at_planes(state.inverse_mass, stopped_, state.v);
+  if (log_.wanted) log_meetings(stopped_.pairs, log_);
+  stopped_.pairs.clear();
   if (step_.is_free) keep_mean_velocity(step_.mean_velocity, state);
   return changes;
 }
@@ -310,6 +302,8 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, const std::func
   phase_ = GuardPhase::certified;
   const StageTimer timer(profile, Stage::regions, 0);
   ++step_.number;
+  if (log_.wanted) rows_.deals.note_pushes();
+  log_.begun = true;
   step_.is_free = false;
   step_.common = {};
   paths_.elapsed += dt;

@@ -11,6 +11,7 @@
 #include "core/contact/guard/awake_particles.h"
 #include "core/contact/guard/calm_steps.h"
 #include "core/contact/guard/critical_steps.h"
+#include "core/contact/guard/guard_log.h"
 #include "core/contact/guard/guarded_cloths.h"
 #include "core/contact/guard/guarded_pairs.h"
 #include "core/contact/guard/guarded_step.h"
@@ -117,12 +118,26 @@ class ClothGuard {
   /// impulses. `sweep` makes the velocities admissible.
   void settle(ClothState<Real>& state, Real dt, Profile& profile);
 
-  /// Says that a tick begins, of whose work `work` shall tell.
-  void begin_tick() { tangled_.tangles.begin_tick(); }
-  /// Says that it ends: `rows` is up to date.
-  void end_tick() { rows_.deals.give_back(rows_.all, executor_); }
+  /// Switches logging what rows push; changes no result.
+  void log_forces(bool wanted) {
+    clear_log(log_);
+    log_.wanted = wanted;
+  }
+  /// Says that a tick begins, of whose work and forces `work` and `log` shall tell.
+  void begin_tick() {
+    tangled_.tangles.begin_tick();
+    rows_.deals.forget_pushes();
+    clear_log(log_);
+  }
+  /// Says that it ends: `rows` and `log` are up to date.
+  void end_tick() {
+    note_settled();
+    if (log_.wanted) rows_.deals.log_pushes(rows_.all, log_);
+    rows_.deals.give_back(rows_.all, executor_);
+  }
 
   const GuardCounts& counts() const { return counts_; }
+  const GuardLog& log() const { return log_; }
   /// Those that are not `gone`: all whose features come nearer than twice the reach while all
   /// particles go along their predicted paths.
   const std::vector<GuardedPair<Real>>& pairs() const { return pairs_.all; }
@@ -137,8 +152,6 @@ class ClothGuard {
   bool presses() const { return rows_.deals.pushes(); }
   /// Whether its certificate stopped any particle in the last step.
   bool stops() const { return stopped_.any; }
-  /// Time of the forces that the rows' impulses stand against [s].
-  Real kicked() const { return sweeps_.kicked; }
   /// Pairs about which nothing is promised: features that cross or touch since the start, and
   /// those around them.
   std::size_t open_pairs() const { return pairs_.open + tangled_.open(); }
@@ -161,6 +174,10 @@ class ClothGuard {
                        Profile& profile);
   RowSource<Real> row_source(const ClothState<Real>& state) const {
     return {cloths_, state, step_.from, regions_.smallest_gap, making_.jammed};
+  }
+  /// Notes what was pushed when the last steps were settled, whose sweeps are over.
+  void note_settled() {
+    if (log_.wanted && log_.begun && settled_) rows_.deals.note_pushes();
   }
   void examine_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void start_rows(ClothState<Real>& state, Real dt, Real kicked, Profile& profile);
@@ -189,6 +206,7 @@ class ClothGuard {
   bool settled_ = true;  ///< the last tick has been settled, and nothing solved since
 
   GuardCounts counts_;
+  GuardLog log_;
 };
 
 extern template class ClothGuard<float>;

@@ -9,10 +9,12 @@
 
 namespace weft {
 
-/// Contacts of cloths with themselves and each other: the guard's rows that push, and those whose
-/// features touch. Forces are those of the last kick.
-/// @param x  positions now [m]
+/// Contacts of cloths with themselves and each other: pairs that pushed in the tick, with their
+/// mean forces over it, and rows whose features touch.
+/// @param x        positions now [m]
+/// @param seconds  of the tick
 template <class Real>
-std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x);
+std::vector<ContactPoint> contacts_of(const ClothGuard<Real>& guard, const Vec3Array<Real>& x,
+                                      double seconds);
 
 }  // namespace weft

@@ -49,10 +49,13 @@ Quad<Real> tangential(const GuardRow<Real>& row, const Quad<Real>& v) {
   return v - row.normal * dot(row.normal, v);
 }
 
-/// Kind of the row's pair, which its key tells (see key_of in guarded_pairs.h).
+/// Kind of a pair by its key (see key_of in guarded_pairs.h).
+inline PairKind kind_of_key(std::uint64_t key) {
+  return (key >> 63) != 0 ? PairKind::edge_edge : PairKind::vertex_triangle;
+}
 template <class Real>
 PairKind kind_of(const GuardRow<Real>& row) {
-  return (row.key >> 63) != 0 ? PairKind::edge_edge : PairKind::vertex_triangle;
+  return kind_of_key(row.key);
 }
 
 /// The triangle, if it is a pair of one and a particle.

@@ -35,6 +35,7 @@ std::size_t first_open(std::vector<Index>& open, std::size_t at) {
 template <class Real>
 void RowDeals<Real>::clear() {
   for (std::vector<RowBlock<Real>>& blocks : blocks_) blocks.clear();
+  forget_pushes();
   few_ = true;
   changed_ = false;
 }
@@ -137,6 +138,41 @@ void RowDeals<Real>::give_back(std::span<GuardRow<Real>> rows, Executor* executo
   run_chunks(few_ ? nullptr : executor, static_cast<int>(kDeals), [&](int number) {
     for (const RowBlock<Real>& block : blocks_[at_index(number)]) block.give_back(rows);
   });
+}
+
+template <class Real>
+void RowDeals<Real>::note_pushes() {
+  for (std::size_t number = 0; number < kDeals; ++number) {
+    const std::vector<RowBlock<Real>>& blocks = blocks_[number];
+    pushed_[number].resize(blocks.size());  // with zeros
+    for (std::size_t b = 0; b < blocks.size(); ++b) {
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t k = 0; k < kBatchRows; ++k)
+          pushed_[number][b][axis][k] +=
+              blocks[b].normal[axis][k] * blocks[b].push[k] + blocks[b].drag[axis][k];
+      }
+    }
+  }
+}
+
+template <class Real>
+void RowDeals<Real>::log_pushes(std::span<const GuardRow<Real>> rows, GuardLog& log) {
+  for (std::size_t number = 0; number < kDeals; ++number) {
+    for (std::size_t b = 0; b < pushed_[number].size(); ++b) {
+      const RowBlock<Real>& block = blocks_[number][b];
+      for (std::size_t k = 0; k < block.count; ++k) {
+        const auto& [x, y, z] = pushed_[number][b];
+        const Vec3d impulse(x[k], y[k], z[k]);
+        if (!impulse.isZero(0)) log_impulse(rows[at_index(block.row[k])], impulse, log);
+      }
+    }
+  }
+  forget_pushes();
+}
+
+template <class Real>
+void RowDeals<Real>::forget_pushes() {
+  for (auto& pushed : pushed_) pushed.clear();
 }
 
 template <class Real>

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/contact/guard/guard_log.h"
 #include "core/contact/guard/guard_row.h"
 #include "core/contact/guard/row_blocks.h"
 #include "core/contact/guard/row_slabs.h"
@@ -34,6 +35,11 @@ class RowDeals {
   void add(std::size_t list, Index row, std::span<const GuardRow<Real>> rows);
   /// Gives back what responses have changed since the rows were taken over or given back.
   void give_back(std::span<GuardRow<Real>> rows, Executor* executor);
+  /// Adds up what the rows push in this step, until it is logged or forgotten.
+  void note_pushes();
+  /// Logs what was added up. Call before rows are taken over anew.
+  void log_pushes(std::span<const GuardRow<Real>> rows, GuardLog& log);
+  void forget_pushes();
   /// Whether any row pushes.
   bool pushes() const;
 
@@ -65,6 +71,8 @@ class RowDeals {
   void deal(std::size_t number, Index row, const std::array<Index, 4>& particles);
 
   std::array<std::vector<RowBlock<Real>>, kDeals> blocks_;
+  /// Of each block, impulses of its rows that were added up [N s]; empty if none was.
+  std::array<std::vector<std::array<typename RowBlock<Real>::Numbers, 3>>, kDeals> pushed_;
   std::array<std::vector<RowBatch>, kDeals> batches_;  ///< before they are blocks
   std::array<std::vector<Index>, kDeals> open_;  ///< from each batch on, the next that has room
   /// Change counter of each list when it was last dealt.

@@ -247,6 +247,19 @@ RowMaking<Real> row_making(std::size_t particles) {
 }
 
 template <class Real>
+void forget_made(RowMaking<Real>& making) {
+  making.made = false;
+  making.passed.clear();
+  making.jammed.clear();
+  std::fill(making.is_moved.begin(), making.is_moved.end(), 0);
+  for (RowPart<Real>& part : making.parts) {
+    part.columns.clear();
+    part.passed.clear();
+    for (std::vector<GuardRow<Real>>& rows : part.rows) rows.clear();
+  }
+}
+
+template <class Real>
 void place_new_particles(const GuardedPairs<Real>& pairs, std::size_t first,
                          const QuadArray<Real>& x, RowMaking<Real>& making) {
   for_pairs_from(pairs, first, [&](const GuardedPair<Real>& pair) {
@@ -373,7 +386,7 @@ void turn_rows(const RowSource<Real>& source, RowMaking<Real>& making, RowSet<Re
   }
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(turn_rows, note_jammed, row_making, place_new_particles, find_moved,
-                           renew_rows, add_arrived)
+WEFT_INSTANTIATE_FUNCTIONS(turn_rows, note_jammed, forget_made, row_making, place_new_particles,
+                           find_moved, renew_rows, add_arrived)
 
 }  // namespace weft

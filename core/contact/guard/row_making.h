@@ -60,6 +60,10 @@ struct RowMaking {
 template <class Real>
 RowMaking<Real> row_making(std::size_t particles);
 
+/// Forgets all that was made; keeps the memory.
+template <class Real>
+void forget_made(RowMaking<Real>& making);
+
 /// Whether it is time to choose the busy rows and turn those that push.
 template <class Real>
 bool is_time_to_look(const RowMaking<Real>& making) {

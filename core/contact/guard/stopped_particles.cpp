@@ -14,8 +14,7 @@ namespace {
 
 /// Takes the approach from one pair. @return by how much its normal velocity changed [m/s]
 template <class Real>
-Real meet(const StoppedPair<Real>& pair, const std::vector<Real>& inverse_mass,
-          Vec3Array<Real>& v) {
+Real meet(StoppedPair<Real>& pair, const std::vector<Real>& inverse_mass, Vec3Array<Real>& v) {
   Real approach = 0, mobility = 0;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = at_index(pair.particle[k]);
@@ -23,6 +22,7 @@ Real meet(const StoppedPair<Real>& pair, const std::vector<Real>& inverse_mass,
     mobility += pair.weight[k] * pair.weight[k] * inverse_mass[i];
   }
   if (!(approach > 0 && mobility > 0)) return 0;
+  pair.pushed += approach / mobility;
   for (std::size_t k = 0; k < 4; ++k) {
     const auto i = at_index(pair.particle[k]);
     v[i] += pair.normal * (pair.weight[k] * inverse_mass[i] * approach / mobility);
@@ -96,12 +96,11 @@ void meet_at_planes(const std::vector<Real>& inverse_mass, StoppedParticles<Real
   Real enough = 0;
   for (int round = 0; round < kMostMeetings; ++round) {
     Real largest = 0;
-    for (const StoppedPair<Real>& pair : stopped.pairs)
+    for (StoppedPair<Real>& pair : stopped.pairs)
       largest = std::max(largest, meet(pair, inverse_mass, v));
     if (!(largest > enough)) break;
     if (round == 0) enough = largest * Real(kMeetingResidual);
   }
-  stopped.pairs.clear();
 }
 
 template <class Real>

@@ -19,6 +19,7 @@ struct StoppedPair {
   std::array<Real, 4> weight = {0, 0, 0, 0};  ///< of the closest points, as PairSeparation has it
   Vec3<Real> normal = Vec3<Real>::Zero();     ///< from the second side to the first
   std::uint64_t key = 0;
+  Real pushed = 0;  ///< impulse that its sides then got from each other along the normal [N s]
 };
 
 /// A pair that was stopped in so many steps that its particles are jammed.
@@ -80,7 +81,7 @@ template <class Real>
 void keep_mean_velocity(const Vec3d& mean, ClothState<Real>& state);
 
 /// Lets the stopped pairs take the velocity of their approach from each other, without a bounce:
-/// impulses along their normals, which keep momentum and take energy. Forgets all that was stopped.
+/// impulses along their normals, which keep momentum and take energy.
 template <class Real>
 void meet_at_planes(const std::vector<Real>& inverse_mass, StoppedParticles<Real>& stopped,
                     Vec3Array<Real>& v);
