@@ -35,6 +35,17 @@ Vec3d rest_of(const Pin& pin) {
   return pin.path->move.target - (pin.path->start[centre] + pin.path->offset);
 }
 
+/// The largest pace from which a pin can stop after a distance [m/s], if each tick, and the end of
+/// the last one, may take kPinAcceleration times a tick of it. In units of that, n such ticks cover
+/// n u - n (n - 1)/2; the fewest that may do have a last pace of at most 1.
+double pace_before_stop(double distance, double tick_seconds) {
+  assert(distance > 0 && tick_seconds > 0);
+  const double change = kPinAcceleration * tick_seconds,
+               covered = distance / (change * tick_seconds),
+               ticks = std::max(1.0, std::ceil((std::sqrt(1 + 8 * covered) - 1) / 2));
+  return change * (covered / ticks + (ticks - 1) / 2);
+}
+
 /// Resets the places of a pin's particles to slightly ahead of these, towards the target: it leads
 /// lagging particles, around obstacles if friction permits.
 template <class Real>
@@ -109,9 +120,13 @@ void PinDrive<Real>::plan(double tick_seconds, const ClothState<Real>& state, Pi
     if (behind) lead_from_here(pin, state, path);
     const Vec3d rest = rest_of(pin);
     const double distance = rest.norm();
-    if (behind || distance < kArrivalDistance) continue;
+    if (behind) continue;
+    if (distance < kArrivalDistance) {
+      path.pace = 0;
+      continue;
+    }
     path.pace = std::min({path.move.speed, path.pace + kPinAcceleration * tick_seconds,
-                          std::sqrt(2 * kPinAcceleration * distance)});
+                          pace_before_stop(distance, tick_seconds)});
     path.step = path.pace * tick_seconds < distance
                     ? (rest * (path.pace * tick_seconds / distance)).eval()
                     : rest;

@@ -179,6 +179,35 @@ TEST_CASE("a pin that is given a time is fixed at its target within it, and not 
   }
 }
 
+TEST_CASE("a pin speeds up and brakes by no more than 40 m/s^2, at any tick rate and speed") {
+  const double rate = GENERATE(43, 60, 200, 400), speed = GENERATE(0.3, 1.3, 10.0),
+               distance = GENERATE(0.013, 0.2, 1.0);
+  CAPTURE(rate, speed, distance);
+  WorldDef def;
+  def.cloths[0] = hanging_cloth(4, 4, 0.3, 0.3, 1.5, 0);
+  def.pins = {{EdgeStrip{}, 0, {}}};
+  def.contact.seed.self = SelfContact::none;
+  def.tick_rate = rate;
+  World<double> world(def);
+  send_all(world, Vec3d(distance, 0, 0), speed, 1e4);
+  double x = centre_of(world, 0)[0], v = 0, most = 0, fastest = 0;
+  while (world.pins().any_moving()) {
+    REQUIRE(world.report().time < 10);
+    world.step();
+    const double moved = (centre_of(world, 0)[0] - x) * rate;
+    most = std::max(most, std::abs(moved - v) * rate);
+    fastest = std::max(fastest, moved);
+    x += moved / rate;
+    v = moved;
+  }
+  CHECK(most <= 40 * (1 + 1e-6));
+  CHECK(v == Approx(0).margin(1e-6));
+  // It is as fast as these allow.
+  const double possible = std::min(speed, std::sqrt(40 * distance));
+  CHECK(fastest <= possible * (1 + 1e-6));
+  CHECK(fastest >= possible - 40 / rate);
+}
+
 TEST_CASE("a pin that is stopped on its way is fixed where it is") {
   World<double> world(hung_cloth());
   const PinId id = world.pins().list[0].id;
