@@ -17,7 +17,9 @@ struct PinReaction {
   Vec3d force = Vec3d::Zero();  ///< of the pin on the cloth [N]
 };
 
-/// Forces between the cloth and its supports, means over a tick. Forces of hands are in grabs.h.
+/// Forces between the cloth and its supports, means over a tick; of pins and colliders that hold
+/// cloth which sleeps, over the time in which it was still (still_forces.h). Forces of hands are in
+/// grabs.h.
 struct Reactions {
   std::uint64_t tick = 0;  ///< to which they belong
 

@@ -50,6 +50,13 @@ class Sleep {
     assert(part < asleep_.size());
     return asleep_[part] != 0;
   }
+  /// Ticks of stillness after which a cloth may sleep.
+  std::uint32_t ticks_to_sleep() const { return ticks_; }
+  /// Ticks for which a cloth has been still, those before it fell asleep included.
+  std::uint32_t still_ticks(std::size_t part) const {
+    assert(part < still_ticks_.size());
+    return still_ticks_[part];
+  }
   bool any_asleep() const;
   bool all_asleep() const;
   /// For each cloth, in the order of the model: 1 if it sleeps.

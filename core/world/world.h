@@ -24,8 +24,8 @@
 #include "core/world/debug_trees.h"
 #include "core/world/energy_account.h"
 #include "core/world/energy_balance.h"
-#include "core/world/reactions.h"
 #include "core/world/sleep.h"
+#include "core/world/still_forces.h"
 #include "core/world/world_def.h"
 
 // The world: cloths, objects and everything that acts, advanced tick by tick.
@@ -201,7 +201,7 @@ class World {
   ComingStarts coming_bad_starts() const;
 
   /// Switches measuring contacts and forces in each tick; changes no result. `reactions` returns
-  /// what the last tick measured until the next one ends.
+  /// what the last tick measured until the next one ends; of cloth that sleeps its StillForces.
   void measure_forces(bool wanted);
   /// Looks one tick ahead, once, if forces are wanted and no tick has measured them since the state
   /// was set: `reactions` then returns those of `coming_reactions`.
@@ -383,10 +383,10 @@ class World {
   Bvh<Real> pick_tree_;  ///< over the triangles at rest; refitted for each pick
   TickReport report_;
   std::uint64_t tick_ = 0;
-  /// Forces of what holds the cloth.
-  struct Supports {
+  struct Supports {  ///< forces of what holds the cloth
     bool wanted = false;
     HeldForces<Real> held;          ///< of the running tick, if they are wanted
+    StillForces still;              ///< of cloth that sleeps, if they are wanted
     std::optional<Reactions> told;  ///< of the last tick, or the coming one
   };
   Supports supports_;

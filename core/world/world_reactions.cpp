@@ -12,6 +12,7 @@ namespace weft {
 
 template <class Real>
 void World<Real>::measure_forces(bool wanted) {
+  if (wanted && !supports_.wanted) supports_.still.forget();
   supports_.wanted = wanted;
   contact_.objects.log_impulses(wanted, energy_.has_value());
   if (contact_.guard) contact_.guard->log_forces(wanted);
@@ -58,6 +59,7 @@ void World<Real>::take_reactions() {
   }
   if (solver_of(def_) != SolverKind::relaxation)
     add_pin_reactions(model_, surroundings_.gravity, pins_, supports_.held, tick_seconds(), found);
+  supports_.still.note(model_, pins_, sleep_, found);
   supports_.told = std::move(found);
 }
 

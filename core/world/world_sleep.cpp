@@ -22,9 +22,10 @@ void World<Real>::masses_changed() {
   if (contact_.guard) contact_.guard->invalidate_rows();
 }
 
-/// Passes on to contact which cloths sleep now.
+/// Passes on to contact and forces which cloths sleep now.
 template <class Real>
 void World<Real>::sleep_changed() {
+  supports_.still.let_go(sleep_.asleep());
   contact_.objects.let_rest(state_);
   if (contact_.guard) contact_.guard->let_rest(state_.asleep);
 }

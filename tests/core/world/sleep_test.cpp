@@ -1,6 +1,7 @@
 
 #include <catch2/catch.hpp>
 
+#include "core/cloth/fabric_presets.h"
 #include "core/error.h"
 #include "tests/support/sleepers.h"
 #include "tests/support/two_threads.h"
@@ -108,6 +109,83 @@ TEST_CASE("of two cloths apart one sleeps while the other swings, as beside one 
               other.state().x[static_cast<std::size_t>(i)]);
   }
   CHECK(asleep > 120);
+}
+
+namespace {
+
+/// A curtain of a preset that sleeps while it still trembles by up to a millimetre.
+ClothDef trembling(const char* fabric, double x) {
+  ClothDef cloth = curtain("trembling", x);
+  cloth.fabric = make_fabric(fabric);
+  return cloth;
+}
+
+double weight_of(const World<float>& world, std::size_t part) {
+  const IndexRange& range = world.model().parts[part].particles;
+  double mass = 0;
+  for (Index i = range.first; i < range.end(); ++i)
+    mass += static_cast<double>(world.model().mass[static_cast<std::size_t>(i)]);
+  return mass * 9.81;
+}
+
+}  // namespace
+
+TEST_CASE("the pins of sleeping cloth carry its weight, to 1 %, for as long as it sleeps") {
+  const char* fabric = GENERATE("cotton", "silk", "wool", "denim", "leather", "nylon");
+  CAPTURE(fabric);
+  WorldDef def = hanging({trembling(fabric, 0)}, 1);
+  def.sleep = {0.5, 1e-3};
+  World<float> world(def);
+  world.measure_forces(true);
+  REQUIRE(run_to_sleep(world) > 0);
+  for (int tick = 0; tick < 3; ++tick) {
+    CHECK(world.reactions()->pins[0].force[1] == Approx(weight_of(world, 0)).epsilon(0.01));
+    REQUIRE(world.step().rested);
+  }
+}
+
+TEST_CASE("what is told of sleeping cloth stays while another swings, and ends as it wakes") {
+  ClothDef swinging = curtain("swinging", 1.2);
+  swinging.v = Vec3d(1, -1, 0).normalized();
+  WorldDef def = hanging({trembling("denim", 0), swinging}, 0.5);
+  def.sleep = {0.5, 1e-3};
+  World<float> world(def);
+  world.measure_forces(true);
+  for (int tick = 0; tick < 600 && !world.sleep().is_asleep(0); ++tick) world.step();
+  REQUIRE(world.sleep().is_asleep(0));
+  const Vec3d told = world.reactions()->pins[0].force, other = world.reactions()->pins[1].force;
+  CHECK(told[1] == Approx(weight_of(world, 0)).epsilon(0.01));
+  for (int tick = 0; tick < 30; ++tick) {
+    world.step();
+    REQUIRE_FALSE(world.sleep().is_asleep(1));
+    CHECK(world.reactions()->pins[0].force == told);
+  }
+  CHECK(world.reactions()->pins[1].force != other);
+  world.grab(touch(world, world.model().parts[0].triangles.first, 1));
+  world.step();
+  REQUIRE_FALSE(world.sleep().is_asleep(0));
+  CHECK(world.reactions()->pins[0].force != told);
+}
+
+TEST_CASE(
+    "an object carries the weight of cloth that sleeps on it, beside one that swings, to 2 %") {
+  ClothDef sheet = test::flat_cloth(10, 10, 0.3, 0.3), swinging = curtain("swinging", 1.2);
+  sheet.name = "sheet";
+  sheet.origin = Vec3d(-0.5, 0.01, 0);
+  sheet.fabric.thickness = 0.004;
+  swinging.v = Vec3d(1, -1, 0).normalized();
+  WorldDef def = hanging({swinging}, 0.5);
+  def.cloths.push_back(sheet);
+  def.colliders = {{"ground", PlaneDef{}}};
+  def.sleep = {0.5, 1e-3};
+  World<float> world(def);
+  world.measure_forces(true);
+  for (int tick = 0; tick < 600 && !world.sleep().is_asleep(1); ++tick) world.step();
+  REQUIRE(world.sleep().is_asleep(1));
+  for (int tick = 0; tick < 30; ++tick) {
+    CHECK(world.reactions()->colliders[0][1] == Approx(-weight_of(world, 1)).epsilon(0.02));
+    world.step();
+  }
 }
 
 TEST_CASE("a sleeping cloth costs nothing: all work is that of those who are awake") {
