@@ -93,6 +93,9 @@ PinExtent strip(const ClothModel<Real>& model, const Pin& pin, const EdgeStrip& 
 
 std::string describe(const PinExtent& pin) {
   const std::string name = "pins[" + std::to_string(pin.pin) + "]: ";
+  if (pin.all)
+    return name + (pin.asked_area == 0 ? "a strip of " : "a disc of ") + rounded_text(pin.asked) +
+           " m holds all of its cloth";
   const std::string clamped = pin.clamps ? ", and clamps it where it was asked to" : "";
   if (pin.asked_area == 0)
     return name + "a strip of " + rounded_text(pin.asked) + " m holds the fabric up to " +
@@ -115,6 +118,8 @@ std::vector<PinExtent> coarse_pins(const World<Real>& world) {
     if (edge ? edge->width == 0 : pins[k].def.radius == 0) continue;
     PinExtent extent = edge ? strip(world.model(), pins[k], *edge) : disc(world.model(), pins[k]);
     extent.pin = k;
+    extent.all = static_cast<Index>(pins[k].particles.size()) ==
+                 part_of_particle(world.model(), pins[k].centre).particles.count;
     if (differs(extent.asked, extent.held) || differs(extent.asked_area, extent.held_area))
       found.push_back(extent);
   }
@@ -127,6 +132,8 @@ std::string describe(const std::vector<PinExtent>& pins) {
   const std::size_t named = std::min(pins.size(), kNamedPins);
   for (std::size_t k = 0; k < named; ++k) text += (k > 0 ? "; " : "") + describe(pins[k]);
   if (pins.size() > named) text += "; and " + std::to_string(pins.size() - named) + " more";
+  if (std::all_of(pins.begin(), pins.end(), [](const PinExtent& pin) { return pin.all; }))
+    return text;
   return text + ": whole particles are held, and a finer grid comes nearer";
 }
 

@@ -19,6 +19,7 @@ struct PinExtent {
   std::size_t pin = 0;                   ///< its place in the scene's list
   double asked = 0, held = 0;            ///< width of a strip, radius of a disc [m]
   double asked_area = 0, held_area = 0;  ///< of a disc [m^2]; 0: a strip
+  bool all = false;                      ///< it holds all of its cloth
   bool clamps = false;                   ///< the fabric bends as if clamped at its border
 };
 

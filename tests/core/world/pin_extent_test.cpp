@@ -65,3 +65,15 @@ TEST_CASE("a single particle asks for no area, and of many pins the first four a
   CHECK(text.find("pins[4]") == std::string::npos);
   CHECK(text.find("; and 2 more") != std::string::npos);
 }
+
+TEST_CASE("a pin that holds all of its cloth is told so, and not that a finer grid comes nearer") {
+  const PinDef strip{EdgeStrip{Side::left, 3}, 0, {}}, disc{MaterialPoint{0.5, 0.5}, 2, {}};
+  for (const int particles : {5, 41}) {
+    CHECK(describe(extents(particles, {strip})) ==
+          "pins[0]: a strip of 3 m holds all of its cloth");
+    CHECK(describe(extents(particles, {disc})) == "pins[0]: a disc of 2 m holds all of its cloth");
+  }
+  const auto found = extents(41, {strip, {EdgeStrip{Side::right, 0.07}, 0, {}}});
+  CHECK(describe(found).find("and a finer grid comes nearer") != std::string::npos);
+  CHECK(extents(41, {{EdgeStrip{Side::left, 1}, 0, {}}}).empty());
+}
