@@ -20,9 +20,10 @@ inline constexpr double kPoissonOfGrid = -1;
 /// (warp), B/2 (weft) times curvature squared; B in every direction if both are equal.
 ///
 /// Damping (Kelvin and Voigt): stress is that of the strain plus a relaxation time tau times its
-/// rate, one tau each for stretch, shear and bending. A wave or mode of angular frequency omega
-/// then decays by omega^2 tau / 2 a second, whatever the mesh. `damping_ratio` is what stability
-/// needs besides, of the mesh's highest mode; stretch and shear have the larger of both.
+/// rate, one tau each for stretch, shear and bending; on a grid C12 has that of shear. A wave or
+/// mode of angular frequency omega then decays by omega^2 tau / 2 a second, whatever the mesh.
+/// `damping_ratio` is what stability needs besides, of the mesh's highest mode; stretch and shear
+/// have the larger of both.
 ///
 /// Locking (biphasic stretch): beyond the strain `locking_strain` a thread is `locking_factor`
 /// times as stiff, so the energy per area grows by (factor - 1) Y (e - e_L)^2 / 2. Of verlet alone.
@@ -74,7 +75,8 @@ void visit_fields_of_fabric(Def& f, Visitor&& visit) {
         f.damping_ratio);
   visit(FieldInfo{"stretch_damping", kRelaxationTimeRange, "s", "relaxation time of stretch"},
         f.stretch_damping);
-  visit(FieldInfo{"shear_damping", kRelaxationTimeRange, "s", "relaxation time of shear"},
+  visit(FieldInfo{"shear_damping", kRelaxationTimeRange, "s",
+                  "relaxation time of shear, and on a grid of what couples stretch along u and v"},
         f.shear_damping);
   visit(FieldInfo{"bending_damping", kRelaxationTimeRange, "s", "relaxation time of bending"},
         f.bending_damping);

@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <numbers>
 
+#include "core/cloth/grid_springs.h"
 #include "core/cloth/stability_bound.h"
 
 namespace weft {
@@ -29,6 +30,24 @@ double loss_of_wave(const ClothModel<Real>& model, const ClothPart<Real>& part, 
   const double wave = std::numbers::pi / warp_length(model, part.particles);
   const double omega2 = wave * wave * part.fabric.stretch_warp / part.fabric.areal_density;
   return 1 - std::exp(-time * omega2);
+}
+
+/// The longer relaxation time of stretch that a grid gives one of its threads, if its diagonals
+/// make it longer than asked for; else 0 [s].
+/// @param least  that stability needs [s]
+double stretch_by_diagonals(const ClothDef& cloth, const FabricDef& fabric, double least) {
+  if (cloth.mesh || cloth.direct_springs) return 0;
+  const double cell_u = cloth.width / (cloth.columns - 1), cell_v = cloth.height / (cloth.rows - 1),
+               ratio2 = cell_u * cell_u / (cell_v * cell_v);
+  const SpringTimes times = grid_spring_times(fabric, cell_u, cell_v, least);
+  const auto whole = [&](double stiffness, double diagonals, double time) {
+    if (!(stiffness > 0)) return 0.0;
+    return (time * std::max(stiffness - diagonals, 0.0) + times.shear * diagonals) / stiffness;
+  };
+  const double longer = std::max(whole(fabric.stretch_warp, fabric.shear * ratio2, times.warp),
+                                 whole(fabric.stretch_weft, fabric.shear / ratio2, times.weft));
+  constexpr double kRounding = 1e-9;
+  return longer > std::max(fabric.stretch_damping, least) * (1 + kRounding) ? longer : 0;
 }
 
 std::string number(double value) {
@@ -55,6 +74,8 @@ std::vector<MeshDamping> damping_of_meshes(const World<Real>& world) {
       damping.given = least;
       damping.loss = loss_of_wave(world.model(), part, least);
     }
+    damping.of_shear = stretch_by_diagonals(world.def().cloths[k], fabric, least);
+    damping.own = std::max(fabric.stretch_damping, least);
     if (solver == SolverKind::verlet) {
       const FrequencyBounds& b = part.bounds;
       const double omega2 = b.membrane_omega2 + b.locking_omega2 + b.bending_omega2;
@@ -65,7 +86,8 @@ std::vector<MeshDamping> damping_of_meshes(const World<Real>& world) {
       damping.undamped = substeps(least * b.membrane_omega2);
       damping.substeps = substeps(b.membrane_damping_rate + b.bending_damping_rate);
     }
-    if (damping.given == 0 && damping.substeps <= damping.undamped) continue;
+    if (damping.given == 0 && damping.of_shear == 0 && damping.substeps <= damping.undamped)
+      continue;
     damping.cloth = cloth_name(world.def(), static_cast<Index>(k));
     found.push_back(damping);
   }
@@ -73,16 +95,23 @@ std::vector<MeshDamping> damping_of_meshes(const World<Real>& world) {
 }
 
 std::string describe(const MeshDamping& damping) {
-  std::string text = damping.cloth + ": ";
+  std::string text;
+  const auto say = [&text](const std::string& what) {
+    text += (text.empty() ? "" : "; and ") + what;
+  };
   if (damping.given > 0)
-    text += "its fabric damps with a relaxation time of " + number(damping.asked) +
-            " s, and stability needs " + number(damping.given) +
-            " s on this mesh: the first stretch wave loses at least " + number(100 * damping.loss) +
-            " % of its energy a second; a finer mesh needs less";
-  if (damping.substeps <= damping.undamped) return text;
-  return text + (damping.given > 0 ? "; and " : "") + "its damping takes " +
-         std::to_string(damping.substeps) + " substeps a tick in place of " +
-         std::to_string(damping.undamped);
+    say("its fabric damps with a relaxation time of " + number(damping.asked) +
+        " s, and stability needs " + number(damping.given) +
+        " s on this mesh: the first stretch wave loses at least " + number(100 * damping.loss) +
+        " % of its energy a second; a finer mesh needs less");
+  if (damping.of_shear > 0)
+    say("the diagonals of its grid, damped by shear_damping, damp stretch along a thread with " +
+        number(damping.of_shear) + " s in place of " + number(damping.own) +
+        " s; a mesh damps both as they are set");
+  if (damping.substeps > damping.undamped)
+    say("its damping takes " + std::to_string(damping.substeps) + " substeps a tick in place of " +
+        std::to_string(damping.undamped));
+  return damping.cloth + ": " + text;
 }
 
 template std::vector<MeshDamping> damping_of_meshes(const World<float>&);

@@ -9,14 +9,18 @@
 
 namespace weft {
 
-/// A cloth whose mesh needs more damping than its fabric has, or whose damping takes substeps.
+/// A cloth whose mesh needs more damping than its fabric has, or a grid whose diagonals damp
+/// stretch by more, or a cloth whose damping takes substeps.
 struct MeshDamping {
   std::string cloth;
   double asked = 0;  ///< relaxation time of stretch or shear that the fabric has [s]
   double given = 0;  ///< and that which stability needs [s]; 0: no more than the fabric has
   double loss = 0;   ///< by that, of the energy of the first stretch wave along the warp, a second
-  int substeps = 0;  ///< per tick
-  int undamped = 0;  ///< and with no more damping than stability needs
+  double of_shear = 0;  ///< relaxation time that the diagonals of a grid, damped as shear, give the
+                        ///< stretch of a thread beyond its own [s]; 0: none
+  double own = 0;       ///< which is this [s]
+  int substeps = 0;     ///< per tick
+  int undamped = 0;     ///< and with no more damping than stability needs
 };
 
 /// The cloths of a world at its start whose fabric has relaxation times of its own, if these are

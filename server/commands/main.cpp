@@ -202,9 +202,12 @@ void add_fabric(CLI::App& app, FabricOptions& o, std::vector<std::string>& setti
   fabric.add_option("--mode", o.mode,
                     "First mode of a strip along the warp: stretch, shear (both held at both ends) "
                     "or bending (held level at one end)");
+  fabric.add_option("--form", o.form,
+                    "grid or mesh (grid; mesh for a fabric with a poisson): a grid damps its "
+                    "stretch by shear_damping too, because its diagonals resist stretch as well");
   add_number(fabric, "--length", o.length, kStripLengths, "Length of the strip in metres (0.2)");
   add_number(fabric, "--decay-time", o.decay_time, kDecayTimes,
-             "Seconds in which its amplitude fell to 1/e");
+             "Seconds in which its amplitude fell to 1/e, at least those of critical damping");
   add_number(fabric, "--loss-factor", o.loss_factor, kLossFactors,
              "Energy lost in a cycle over 2 pi times that of the mode");
   add_switch(fabric, "--json", o.json, "Print JSON");

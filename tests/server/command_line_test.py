@@ -58,6 +58,19 @@ class CommandLine(unittest.TestCase):
             (["simulate", "-x"], "unknown option -x"),
             (["fabric", "--decay-time", "1"], "--mode = (nothing): allowed is the mode that was measured"),
             (["fabric", "--mode", "twist"], "stretch, shear or bending"),
+            # (1.8751 / 8 cm)^2 sqrt(9.81 (19 mm)^3) = 4.507/s; a strip of 100 m swings too slowly.
+            (["fabric", "--set", "fabric=wool", "--mode", "bending", "--length", "0.08", "--decay-time", "0.12"],
+             "--decay-time = 0.12: allowed is at least 0.222 s, that of critical damping"),
+            (["fabric", "--set", "fabric=wool", "--mode", "bending", "--length", "100", "--loss-factor", "0.5"],
+             "allowed is 0 to 10 s"),
+            (["fabric", "--mode", "stretch", "--loss-factor", "10.5"],
+             "--loss-factor = 10.5: allowed is a number from 0 to 10"),
+            (["fabric", "--form", "net"], "grid or mesh"),
+            (["fabric", "--form", "grid", "--set", "fabric.poisson=0.3"], "mesh for a fabric with a poisson"),
+            # Diagonals with 100 N/m of the 400 along a thread give it 10 ms of their 40.
+            (["fabric", "--mode", "stretch", "--loss-factor", "0", "--set", "fabric.shear=100", "--set", "cloth.rows=30",
+              "--set", "cloth.height=1.2", "--set", "cloth.width=1.2", "--set", "fabric.shear_damping=0.04"],
+             "--loss-factor = 0: allowed is at least"),
             (["fabric", "--length", "0"], "--length = 0: allowed is a number from 0.001 to 100"),
             (["simulate", "--out", "/nowhere/cloth.obj"], "--out = /nowhere/cloth.obj: allowed is"),
             (["simulate", "--set", "=3"], "key=value"),
@@ -153,6 +166,33 @@ class CommandLine(unittest.TestCase):
         loss = json.loads(run(*strip, "--loss-factor", repr(again["loss_factor"])).stdout)["modes"][0]
         self.assertAlmostEqual(loss["relaxation_time_s"], found["relaxation_time_s"], delta=1e-8)
         self.assertIn("fabric.bending_damping=0\n", run("fabric").stdout)
+
+    def test_a_decay_that_a_strip_has_is_told_and_its_setting_is_accepted_and_gives_it(self):
+        def told(*arguments):
+            return json.loads(run("fabric", "--json", *arguments).stdout)["modes"][0]
+
+        strip = ("--set", "fabric=wool", "--mode", "bending", "--length", "0.08")
+        omega = (1.8751040687 / 0.08) ** 2 * (9.81 * 0.019**3) ** 0.5
+        # Above a loss factor of 2 it creeps, as the slower root of its oscillator.
+        slow = told(*strip, "--loss-factor", "4")
+        self.assertTrue(slow["creeps"])
+        self.assertAlmostEqual(slow["decay_time_s"], (2 + 3**0.5) / omega, delta=1e-5)
+        self.assertIn("creeps", run("fabric", *strip, "--loss-factor", "4").stdout)
+        self.assertFalse(told(*strip, "--decay-time", "0.3")["creeps"])
+        undamped = told("--mode", "stretch", "--loss-factor", "0")
+        self.assertEqual((undamped["setting"], undamped["decay_time_s"]), ({"fabric.stretch_damping": 0}, None))
+        # A grid's diagonals damp its stretch by the time of shear: (tau Y (1 + n^2) - 2 n G tau_shear) / E.
+        # The cells are square, so that 20 N/m of the 100 along each thread are the diagonals'.
+        fabric = [part for key in ("fabric.stretch_warp=100", "fabric.stretch_weft=100", "fabric.shear=20",
+                                   "fabric.stretch_damping=0.004", "fabric.shear_damping=0.01", "cloth.rows=30")
+                  for part in ("--set", key)]
+        self.assertAlmostEqual(told("--mode", "stretch", *fabric)["relaxation_time_s"], 0.0035, delta=1e-9)
+        mesh = told("--mode", "stretch", "--form", "mesh", *fabric)
+        self.assertAlmostEqual(mesh["relaxation_time_s"], 0.004, delta=1e-9)
+        wanted = told("--mode", "stretch", *fabric, "--decay-time", "0.005")
+        again = told("--mode", "stretch", *fabric,
+                     "--set", f"fabric.stretch_damping={wanted['setting']['fabric.stretch_damping']!r}")
+        self.assertAlmostEqual(again["decay_time_s"], 0.005, delta=1e-9)
 
     def test_a_drape_is_told_of_each_specimen_and_of_all_with_its_error(self):
         told = json.loads(run("drape", "--fabric", "denim", "--starts", "2", "--seconds", "0.1", "--threads", "2",
