@@ -213,7 +213,7 @@ export interface SetCommand {
   gravity?: Vec3;
   /** mean velocity [m/s]; 3 × ±100 */
   wind?: Vec3;
-  /** typical speed of the gusts [m/s]; 0 to 100 */
+  /** bound of each component of the gusts [m/s]; 0 to 100 */
   gust_speed?: number;
   /** size of an eddy [m]; 0.01 to 100 */
   gust_length?: number;

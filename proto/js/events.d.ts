@@ -28,7 +28,7 @@ export interface State {
   gravity: Vec3;
   /** mean velocity [m/s] */
   wind: Vec3;
-  /** typical speed of the gusts [m/s] */
+  /** bound of each component of the gusts [m/s] */
   gust_speed: number;
   /** size of an eddy [m] */
   gust_length: number;

@@ -182,7 +182,8 @@ struct Air {
 
   static void describe(auto& io, auto& air) {
     io.required(Field{"wind", "mean velocity", {}, "m/s"}, air.wind);
-    io.required(Field{"gust_speed", "typical speed of the gusts", {}, "m/s"}, air.gust_speed);
+    io.required(Field{"gust_speed", "bound of each component of the gusts", {}, "m/s"},
+                air.gust_speed);
     io.required(Field{"gust_length", "size of an eddy", {}, "m"}, air.gust_length);
     io.required(Field{"air_density", "", {}, "kg/m³"}, air.density);
     io.required(Field{"still_air", "air resists without wind too"}, air.still);

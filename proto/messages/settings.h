@@ -117,7 +117,7 @@ struct Set {
   static void describe(auto& io, auto& set) {
     io.optional(Field{"gravity", "acceleration", kGravityRange, "m/s²"}, set.gravity);
     io.optional(Field{"wind", "mean velocity", kWindRange, "m/s"}, set.wind);
-    io.optional(Field{"gust_speed", "typical speed of the gusts", kGustSpeedRange, "m/s"},
+    io.optional(Field{"gust_speed", "bound of each component of the gusts", kGustSpeedRange, "m/s"},
                 set.gust_speed);
     io.optional(Field{"gust_length", "size of an eddy", kGustLengthRange, "m"}, set.gust_length);
     io.optional(Field{"air_density", "of the air", kAirDensityRange, "kg/m³"}, set.air_density);

@@ -101,7 +101,7 @@ class Commands(Session):
 
         gravity: acceleration [m/s²]; 3 × ±1000
         wind: mean velocity [m/s]; 3 × ±100
-        gust_speed: typical speed of the gusts [m/s]; 0 to 100
+        gust_speed: bound of each component of the gusts [m/s]; 0 to 100
         gust_length: size of an eddy [m]; 0.01 to 100
         air_density: of the air [kg/m³]; 0 to 1000
         still_air: air resists without wind too; true or false

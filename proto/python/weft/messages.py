@@ -300,7 +300,7 @@ class State(TypedDict):
     tick_rate: float
     gravity: Sequence[float]  # acceleration [m/s²]
     wind: Sequence[float]  # mean velocity [m/s]
-    gust_speed: float  # typical speed of the gusts [m/s]
+    gust_speed: float  # bound of each component of the gusts [m/s]
     gust_length: float  # size of an eddy [m]
     air_density: float
     still_air: bool  # air resists without wind too; true or false
