@@ -47,12 +47,13 @@ export class WeftClient extends Session {
   }
 
   /**
-   * @param {{name?: string, color?: string}} options  kept over reconnections
+   * @param {{name?: string, color?: string}} options  kept over reconnections, once accepted
    * @param {Call} [call]
    */
-  hello(options, call) {
-    Object.assign(this.options, known('hello', options));
-    return this.request('hello', options, call);
+  async hello(options, call) {
+    const answer = await this.request('hello', known('hello', options), call);
+    Object.assign(this.options, options);
+    return answer;
   }
 
   /**
@@ -321,12 +322,14 @@ export class WeftClient extends Session {
   }
 
   /**
-   * @param {{hz?: number, codec?: 'f32' | 'packed', error?: number, forces?: boolean}} options  kept over reconnections
+   * @param {{hz?: number, codec?: 'f32' | 'packed', error?: number, forces?: boolean}} options  kept over
+   *   reconnections, once accepted
    * @param {Call} [call]
    */
-  view(options, call) {
-    Object.assign(this.wantedView, known('view', options));
-    return this.request('view', options, call);
+  async view(options, call) {
+    const answer = await this.request('view', known('view', options), call);
+    Object.assign(this.wantedView, options);
+    return answer;
   }
 
   /**

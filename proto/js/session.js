@@ -84,7 +84,7 @@ export class Session extends Emitter {
   welcome = null;
   /** @type {Mesh | null} */
   mesh = null;
-  /** Arguments of `view`, repeated after a reconnection. @type {object} */
+  /** Arguments of `view` for each connection: those that were accepted, or as they are set here. @type {object} */
   wantedView = {};
   /**
    * @param {string} url  e.g. `ws://127.0.0.1:8080/ws`, or that of the page

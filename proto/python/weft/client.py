@@ -62,8 +62,9 @@ class Client(Queries):
     ) -> HelloResult:
         """Name and colour ("#rrggbb") of this viewer."""
         fields = without_none({"name": name, "color": color})
-        self._hello.update(fields)
-        return await self.request("hello", timeout=timeout, **fields)
+        answer = await self.request("hello", timeout=timeout, **fields)
+        self._hello.update(fields)  # once accepted: what is refused now would be after each reconnection
+        return answer
 
     async def pick(
         self, origin: Iterable[float], direction: Iterable[float], *, timeout: float | None = CLIENTS
@@ -189,8 +190,9 @@ class Client(Queries):
         """What frames are sent. With codec="packed" they take about a byte a vertex, off by at most `error` [m]
         (1e-4), and some time to decode in Python."""
         fields = without_none({"hz": hz, "codec": codec, "error": error, "forces": forces})
-        self._view.update(fields)
-        return await self.request("view", timeout=timeout, **fields)
+        answer = await self.request("view", timeout=timeout, **fields)
+        self._view.update(fields)  # once accepted
+        return answer
 
     async def ping(self, *, timeout: float | None = CLIENTS) -> tuple[float, float]:
         """Round trip, and the server's clock minus this client's [s]."""

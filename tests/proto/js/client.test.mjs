@@ -670,7 +670,9 @@ test('nothing is sent on a socket that the server closes, of which a browser wou
 
 test('a client that moves to another room leaves the first, and has its name, token and view there', async () => {
   const { client, socket, sockets } = await join({ name: 'Ada', token: 'of a link' });
-  client.view({ hz: 30 }).catch(() => {});
+  const viewed = client.view({ hz: 30 });
+  answer(socket, 'view');
+  await viewed;
   const phases = [];
   client.on('status', ({ phase }) => phases.push(phase));
   const asked = client.pause();
@@ -856,13 +858,26 @@ test('a drag ends with the connection, the lease, the server, or a refusal', asy
   await assert.rejects(refused.started, CommandError);
 });
 
-test('a view that was asked for is asked for again after a reconnection', async () => {
-  const { client, sockets, timers } = await join();
-  client.view({ hz: 0 }).catch(() => {});
+test('what the server has accepted of a view and a name is said again after a reconnection, nothing else', async () => {
+  const { client, socket, sockets, timers } = await join();
+  const refuse = (op, field) => {
+    const { id } = socket.ops(op).at(-1);
+    socket.say({ op: 'error', id, command: op, code: 'out_of_range', message: 'no', field });
+  };
+  const accepted = [client.view({ hz: 20, codec: 'packed' }), client.hello({ name: 'Ada' })];
+  answer(socket, 'view');
+  answer(socket, 'hello');
+  await Promise.all(accepted);
+  const refused = [client.view({ hz: 300 }), client.hello({ name: 'x'.repeat(40), color: '#123456' })];
+  refuse('view', 'hz');
+  refuse('hello', 'name');
+  for (const call of refused) await assert.rejects(call, CommandError);
+  client.view({ hz: 0 }).catch(() => {}); // lost with its connection
   sockets[0].lose(1006);
   await timers.pass(300);
   sockets[1].open();
-  assert.deepEqual(sockets[1].ops('view'), [{ op: 'view', hz: 0 }]);
+  assert.deepEqual(sockets[1].ops('view'), [{ op: 'view', hz: 20, codec: 'packed' }]);
+  assert.deepEqual(sockets[1].ops('hello'), [{ op: 'hello', name: 'Ada' }]);
 });
 
 test('clock and round trip come from the ping with the least delay', async () => {

@@ -46,6 +46,21 @@ class ReconnectTest(unittest.IsolatedAsyncioTestCase):
         self.assertEqual(self.server.heard[:-1], [hello, view] * 5)
         self.assertEqual(self.phases, ["waiting", "open"] * 5)
 
+    async def test_what_the_server_refused_is_not_said_again(self):
+        client = await self.join()
+        await client.view(hz=20, codec="packed")
+        self.server.answers = {op: [{"op": "error", "code": "out_of_range", "message": "no"}] for op in ("view", "hello")}
+        for call in (client.view(hz=300, forces=True), client.hello(name="x" * 40, color="#123456")):
+            with self.assertRaises(weft.CommandError):
+                await call
+        self.server.answers = {}
+        self.server.heard.clear()
+        await self.cut()
+        await self.back()
+        await client.pause()
+        again = [{"op": "hello", "name": "Ada"}, {"op": "view", "hz": 20, "codec": "packed"}]
+        self.assertEqual(self.server.heard[:-1], again)
+
     async def test_who_waits_for_a_frame_goes_on_waiting_and_who_waits_for_an_answer_is_told(self):
         client = await self.join()
         self.server.answers = {"hash": []}

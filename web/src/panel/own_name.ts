@@ -41,6 +41,7 @@ export class NameDialog {
   private use(name: string): void {
     if (!name) return;
     remember('name', name);
+    this.client.options.name = name; // also where there is no connection now
     tell_refusal(this.client.hello({ name }), this.tell);
   }
 }

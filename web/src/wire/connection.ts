@@ -36,7 +36,7 @@ export function connect_client(name: string): WeftClient {
   const token = own_token();
   const frames = new WorkerFrames(new Worker('frame_worker.js', { type: 'module' }));
   const client = new WeftClient(socket_of(own_room()), { frames, ...(name ? { name } : {}), ...(token ? { token } : {}) });
-  const look = () => void client.view({ hz: document.hidden ? 0 : EVERY_TICK }).catch(() => {});
+  const look = () => view_from_now(client, { hz: document.hidden ? 0 : EVERY_TICK });
   document.addEventListener('visibilitychange', look);
   client.wantedView = { codec: 'packed', error: SHOWN_ERROR, ...(document.hidden ? { hz: 0 } : {}) };
   window.addEventListener('pagehide', () => client.close());
@@ -63,7 +63,13 @@ export function glance_at(room: string): WeftClient {
 
 /** Asks for the present frame and those that follow, or for none. */
 export function glance_on(client: WeftClient, on: boolean): void {
-  client.view({ hz: on ? GLANCES : 0, codec: 'packed' }).catch(() => {});
+  view_from_now(client, { hz: on ? GLANCES : 0, codec: 'packed' });
+}
+
+/** Asks for frames, on the connections that follow too, also where there is none now. */
+function view_from_now(client: WeftClient, wanted: { hz: number; codec?: 'packed' }): void {
+  client.wantedView = { ...client.wantedView, ...wanted };
+  client.view(wanted).catch(() => {});
 }
 
 /**
