@@ -29,6 +29,11 @@ class SyncDrag:
         return self._drag.grab
 
     @property
+    def active(self) -> bool:
+        """Whether it holds, as far as the server has told."""
+        return self._drag.active
+
+    @property
     def target(self) -> tuple[float, ...] | None:
         """Where it pulls to [m]; None before it holds, if none was given."""
         return self._drag.target
