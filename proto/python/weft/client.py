@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Iterable, Mapping
-from typing import Any, Literal, overload
+from typing import Any, Literal, TypedDict, overload
 
 from .drag import Drag
 from .errors import ConnectionLost
-from .fields import Hold, hold_fields, is_number, listed, without_none
+from .fields import Hold, hold_fields, is_number, known, listed, without_none
 from .queries import Queries
 from .reading import demand
 from .results import (
@@ -16,6 +16,13 @@ from .results import (
 )  # fmt: skip
 from .samples import Frame, Hit
 from .timeouts import ADVANCE_SECONDS, ADVANCE_TICK_SECONDS, CLIENTS
+
+
+class Moved(TypedDict, total=False):
+    """What `move` moves, as a dict: a collider by its name or its place in the list of the mesh, or a pin."""
+
+    collider: str | int
+    pin: int
 
 
 class Observation(AdvanceResult):
@@ -124,7 +131,7 @@ class Client(Queries):
         or a pin, by its id, to a position, at bounded speed or within some seconds, or fixes it where it is
         on its way (stop=True)."""
         if isinstance(what, Mapping):
-            fields: dict[str, Any] = dict(what)
+            fields: dict[str, Any] = dict(known(Moved, "what is moved", what))
         else:
             fields = {"pin" if is_number(what) else "collider": what}
         fields |= {"position": listed(position), "rotation": listed(rotation)}

@@ -12,7 +12,7 @@ from . import layout, packages
 from .announcement import Grabs, Mesh, Pins, Roster, Welcome
 from .binary import decode_binary, encode_ack
 from .errors import CallTimeout, CommandError, ConnectionLost, ProtocolError, WeftError
-from .fields import plain, without_none
+from .fields import text_of, without_none
 from .messages import State
 from .pace import USUAL_RATE, Pace, pause_before
 from .packed import FrameDecoder
@@ -128,7 +128,7 @@ class Session:
         await self._send(op, **fields)
 
     async def _send(self, op: str, **fields: Any) -> None:
-        text = json.dumps({"op": op, **fields}, allow_nan=False, default=plain)
+        text = text_of(op, fields)
         socket = self._socket
         async with self._turn:  # so that no message overtakes another
             wait = self._pace.wait_before_next(asyncio.get_running_loop().time())

@@ -1,6 +1,7 @@
 """The Python client against a played server on loopback, over real sockets."""
 
 import asyncio
+import math
 import unittest
 from unittest import mock
 
@@ -106,9 +107,39 @@ class ClientTest(unittest.IsolatedAsyncioTestCase):
         await self.client.set(fans=[fan], fabric={"preset": "silk"})
         self.assertEqual(len(self.server.heard), 1)
 
-    async def test_nan_is_not_sent(self):
-        with self.assertRaises(ValueError):
-            await self.client.speed(float("nan"))
+    async def test_a_field_of_what_is_held_or_moved_that_there_is_none_of_is_named_and_nothing_is_sent(self):
+        client, near = self.client, {"triangle": 1, "barycentric": [1, 0, 0]}
+        wrong = (
+            (lambda: client.pin({"particle": 3, "radus": 0.1}), "radus"),
+            (lambda: client.pin({**near, "tringle": 1}), "tringle"),
+            (lambda: client.pin({}), "particle"),
+            (lambda: client.pin({"triangle": 1}), "barycentric"),
+            (lambda: client.drag({"particle": 3, "tagret": [0, 0, 0]}).start(), "tagret"),
+            (lambda: client.move({"collider": 0, "sped": 3}, [0, 0, 0]), "sped"),
+            (lambda: client.move({"colider": 0}, [0, 0, 0]), "colider"),
+        )
+        for call, word in wrong:
+            with self.assertRaisesRegex(TypeError, word):
+                await call()
+        self.assertEqual(self.server.heard, [])
+        found = {**near, "position": [0, 1, 0], "particle": 2, "distance": 1}  # as the server tells it
+        for hold in (near, found, {"particle": 2}):
+            await client.pin(hold)
+        await client.move({"collider": 0}, [0, 0, 0])
+        self.assertEqual(len(self.server.heard), 4)
+
+    async def test_a_number_that_is_not_finite_is_named_with_its_command_and_not_sent(self):
+        nan, client = float("nan"), self.client
+        wrong = (
+            (lambda: client.speed(nan), r"speed\.speed = nan"),
+            (lambda: client.pick([0, nan, 0], [0, 0, 1]), r"pick\.origin\[1\] = nan"),
+            (lambda: client.pick((0, 1, 0), (0, 0, -math.inf)), r"pick\.direction\[2\] = -inf"),
+            (lambda: client.set(fabric={"friction": nan}), r"set\.fabric\.friction = nan"),
+            (lambda: client.drag(3, target=[nan, 0, 0]).start(), r"drag\.target\[0\] = nan"),
+        )
+        for call, what in wrong:
+            with self.assertRaisesRegex(ValueError, what):
+                await call()
         self.assertEqual(self.server.heard, [])
 
     async def test_a_refusal_that_nobody_waits_for_is_told(self):
