@@ -11,7 +11,7 @@ from . import packages
 from .address import refusal_of, socket_address, token_of
 from .client import Client
 from .errors import ConnectionLost, ProtocolError
-from .timeouts import CALL_SECONDS, GOODBYE_SECONDS, REFUSAL_SECONDS
+from .timeouts import CALL_SECONDS, CLOSE_SECONDS, GOODBYE_SECONDS, REFUSAL_SECONDS
 
 SUBPROTOCOL = "weft.v1"
 MOST_MESSAGE_BYTES = 256 * 2**20
@@ -55,7 +55,7 @@ class Connecting:
             raise ProtocolError(f"the server does not speak {SUBPROTOCOL}")
         if self._token:  # where one is asked for, nothing comes before it
             await socket.send(json.dumps({"op": "hello", "token": self._token}))
-        socket.close_timeout = self._timeout
+        socket.close_timeout = CLOSE_SECONDS if self._timeout is None else min(CLOSE_SECONDS, self._timeout)
         return socket
 
     async def _connect(self) -> Client:

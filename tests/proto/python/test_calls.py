@@ -176,6 +176,14 @@ class ClosingTest(unittest.IsolatedAsyncioTestCase):
         self.assertTrue(hand._repeater.done())
         self.assertFalse([task for task in asyncio.all_tasks() - before if "_repeat" in str(task)])
 
+    async def test_it_closes_within_four_seconds_of_a_server_that_hangs(self):
+        client = await weft.connect(self.server.url)
+        self.server.socket.transport.pause_reading()
+        begin = time.monotonic()
+        await client.close()
+        self.assertLess(time.monotonic() - begin, 4)
+        self.server.socket.transport.abort()
+
     async def test_a_listener_that_calls_its_blocking_client_is_told_and_the_client_lives_on(self):
         raised = []
 
