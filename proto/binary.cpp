@@ -59,10 +59,14 @@ void BinaryWriter::pad() {
 
 void BinaryWriter::finish() {
   pad();
-  const auto length = static_cast<std::uint32_t>(out_.size());
-  std::memcpy(out_.data() + kLengthOffset, &length, sizeof length);
-  const Sums sums = checksum(out_);
-  std::memcpy(out_.data() + kSumOffset, &sums, sizeof sums);
+  seal(out_);
+}
+
+void seal(std::span<std::byte> message) {
+  const auto length = static_cast<std::uint32_t>(message.size());
+  std::memcpy(message.data() + kLengthOffset, &length, sizeof length);
+  const Sums sums = checksum(message);
+  std::memcpy(message.data() + kSumOffset, &sums, sizeof sums);
 }
 
 Result<BinaryHeader> read_header(std::span<const std::byte> message, BinaryType type,

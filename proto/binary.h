@@ -97,6 +97,9 @@ class BinaryWriter {
   Bytes& out_;
 };
 
+/// Writes length and checksum of a message that is complete but for them.
+void seal(std::span<std::byte> message);
+
 /// Checks type, version, codec, length and checksum and returns the header.
 /// @param least_bytes  the size of this type's fixed part
 /// @param last_codec   the highest supported codec

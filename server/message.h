@@ -61,6 +61,7 @@ struct Message {
   Topic topic = Topic::none;
   /// Held until the message has been written, so that its sender can count those in flight.
   std::shared_ptr<const void> ticket = {};
+  bool jump = false;  ///< of a frame: its viewer has not been shown yet that the state was replaced
 };
 
 inline Message text_message(std::string text, Topic topic = Topic::none) {
@@ -80,6 +81,8 @@ struct Frame {
   bool at_once = false;          ///< not delayed for the viewer's `hz`
   proto::ViewerId only_to = 0;   ///< 0: to all viewers
   proto::ViewerId not_to = 0;    ///< 0: excludes none
+  bool jump = false;             ///< the state was replaced
+  bool owes_jump = false;        ///< the viewer that it excludes has not been shown that
 };
 
 }  // namespace weft::server

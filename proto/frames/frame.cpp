@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <utility>
 
 namespace weft::proto {
@@ -94,6 +95,13 @@ void encode_frame(const FrameView& frame, Bytes& out) {
   visit_lists(frame, put);
   visit_arrays(frame, put);
   writer.finish();
+}
+
+Bytes with_jump(std::span<const std::byte> message) {
+  Bytes bytes(message.begin(), message.end());
+  bytes[offsetof(BinaryHeader, flags)] |= std::byte{kFrameJump};
+  seal(bytes);
+  return bytes;
 }
 
 Result<Frame> decode_frame(std::span<const std::byte> message) {

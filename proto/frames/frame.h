@@ -256,6 +256,9 @@ struct FrameView {
 /// nothing. Empty sections other than positions are left out.
 void encode_frame(const FrameView& frame, Bytes& out);
 
+/// A frame message of any codec with the flag *jump*, whether it has it or not.
+Bytes with_jump(std::span<const std::byte> message);
+
 /// A decoded frame.
 struct Frame {
   FrameHeader header;

@@ -76,7 +76,10 @@ void Hub::offer_mesh(std::uint64_t hash, SharedBytes bytes, const PackedMesh& pa
 void Hub::offer_frame(const Frame& frame) {
   for (auto& [id, viewer] : viewers_) {
     if (frame.only_to != 0 && id != frame.only_to) continue;
-    if (id != frame.not_to) viewer.channel->offer_frame(frame);
+    if (id != frame.not_to)
+      viewer.channel->offer_frame(frame);
+    else if (frame.owes_jump)
+      viewer.channel->owe_jump();
   }
 }
 

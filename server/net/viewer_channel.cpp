@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cassert>
+#include <span>
 #include <utility>
 
+#include "proto/frames/frame.h"
 #include "proto/limits.h"
 #include "server/net/close_codes.h"
 
@@ -18,6 +20,14 @@ constexpr double kEarly = 0.25, kLate = 0.5;
 /// Whether it counts towards the bound of bytes.
 bool counts(const Message& message) {
   return message.topic != Topic::mesh_data && message.topic != Topic::frame;
+}
+
+std::span<const std::byte> bytes_of(const SharedBytes& frame) {
+  return {static_cast<const std::byte*>(frame.data()), frame.size()};
+}
+
+bool tells_jump(const SharedBytes& frame) {
+  return (proto::read_at<proto::BinaryHeader>(bytes_of(frame), 0).flags & proto::kFrameJump) != 0;
 }
 
 /// Whether an announced mesh makes it obsolete.
@@ -47,7 +57,11 @@ void ViewerChannel::send(std::vector<Message> messages) {
 void ViewerChannel::take(Message message) {
   if (closing_ || closed_) return;
   if (message.topic == Topic::mesh) drop_queued(is_of_mesh);
-  if (message.topic == Topic::frame) ++frames_sent_;
+  if (message.topic == Topic::frame) {
+    drop_frame();  // it is older, and would follow
+    message.jump = std::exchange(owes_jump_, false);
+    ++frames_sent_;
+  }
   enqueue(std::move(message));
   if (overflows()) close(kCloseViewerDoesNotRead, "the queue of messages overflowed");
 }
@@ -90,14 +104,19 @@ void ViewerChannel::welcome_done() {
 }
 
 void ViewerChannel::offer_frame(const Frame& frame) {
-  if (!wants_frames()) return;
+  if (!wants_frames()) {
+    owes_jump_ = owes_jump_ || (frame.jump && frames_allowed_);
+    return;
+  }
   // A frame left out because of the viewer's rate does not count as dropped.
   const bool late =
       waiting_frame_ && (waiting_frame_->at_once || clock_() >= next_frame_time_ + kLate / rate());
   if (late && (writing_ || !window_.has_room())) ++frames_dropped_;
   const bool at_once = frame.at_once || (waiting_frame_ && waiting_frame_->at_once);
+  drop_frame();
   waiting_frame_ = frame;
   waiting_frame_->at_once = at_once;
+  waiting_frame_->jump = std::exchange(owes_jump_, false) || frame.jump;
   pump();
 }
 
@@ -116,7 +135,7 @@ void ViewerChannel::set_most_frames(double hz) {
   quality_.restart();
   apply_quality();
   if (hz == 0)
-    waiting_frame_.reset();
+    drop_frame();
   else
     next_frame_time_ = std::min(next_frame_time_, clock_() + 1 / hz);
   pump();
@@ -181,7 +200,8 @@ void ViewerChannel::pump() {
   if (!frame_is_due(now)) return;
   const Frame frame = *std::exchange(waiting_frame_, std::nullopt);
   count_frame(frame, now);
-  start({with_forces_ && frame.with_forces ? frame.with_forces : frame.bytes, true, Topic::frame});
+  const bool full = with_forces_ && frame.with_forces;
+  start({full ? frame.with_forces : frame.bytes, true, Topic::frame, {}, frame.jump});
 }
 
 void ViewerChannel::pack_with(FramePacker& packer, double usual, double most) {
@@ -234,8 +254,11 @@ std::optional<ViewerChannel::Sending> ViewerChannel::take_change() {
 
 void ViewerChannel::start(Message message) {
   writing_ = true;
+  if (message.jump) packed_.held = 0;  // so that it is a key
   if (message.topic == Topic::frame && packer_)
     message.bytes = packer_->pack(message.bytes, packed_);
+  if (message.jump && !tells_jump(message.bytes))
+    message.bytes = SharedBytes(proto::with_jump(bytes_of(message.bytes)));
   stream_.write(message, !queue_.empty());
 }
 

@@ -39,9 +39,10 @@ struct ChannelLimits {
 };
 
 /// The output queue of one viewer: a bounded queue of messages in order, and one slot for the
-/// newest frame. A slow viewer gets fewer frames, never older ones, and delays no other viewer. A
-/// state message (`Topic`) waits at most once, so that only a viewer's own answers can overflow its
-/// queue. Lives on the network thread.
+/// newest frame. A slow viewer gets fewer frames, never older ones, and delays no other viewer: a
+/// newer frame takes the place of the one in the slot, and tells in its stead that the state was
+/// replaced. A state message (`Topic`) waits at most once, so that only a viewer's own answers can
+/// overflow its queue. Lives on the network thread.
 class ViewerChannel {
  public:
   /// @param frame_rate  of the room [1/s]
@@ -60,8 +61,15 @@ class ViewerChannel {
   /// Replaces the waiting frame.
   void offer_frame(const Frame& frame);
 
-  /// Drops the waiting frame; it belongs to an older mesh.
-  void drop_frame() { waiting_frame_.reset(); }
+  /// Drops the waiting frame: it belongs to an older mesh, or a newer one takes its place.
+  void drop_frame() {
+    owes_jump_ = owes_jump_ || (waiting_frame_ && waiting_frame_->jump);
+    waiting_frame_.reset();
+  }
+
+  /// The viewer is not sent a frame that would tell it that the state was replaced; its next one
+  /// does.
+  void owe_jump() { owes_jump_ = true; }
 
   /// The viewer has decoded a frame.
   void on_acknowledged(std::uint32_t sequence);
@@ -146,6 +154,7 @@ class ViewerChannel {
   std::deque<Message> queue_;
   std::size_t queued_bytes_ = 0;  // of the messages that count
   std::optional<Frame> waiting_frame_;
+  bool owes_jump_ = false;        // the next frame tells that the state was replaced
   double next_frame_time_ = 0;    // by `most_frames_`, at even spacing [s]
   double next_urgent_frame_ = 0;  // earliest that may precede it [s]
   std::uint64_t frames_sent_ = 0, frames_dropped_ = 0, dropped_told_ = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "proto/types.h"
 
@@ -17,10 +18,12 @@ class FrameTurns {
   void note_tick() { ticked_ = true; }
   void note_advance() { advanced_ = true; }
   /// The state was replaced.
-  void note_jump() { commanded_ = jumped_ = true; }
+  void note_jump() { commanded_ = jumped_ = advance_jumped_ = true; }
   /// What is seen makes a step that no motion explains.
-  void note_break() { jumped_ = true; }
+  void note_break() { jumped_ = advance_jumped_ = true; }
   bool jumped() const { return jumped_; }
+  /// The same for the viewer of the advance, which its own next frame shows.
+  bool take_advance_jump() { return std::exchange(advance_jumped_, false); }
 
   /// Changes by earlier commands are shown together with those of the coming ticks.
   /// @param viewer  has the frames of these ticks already, or declined them; 0: none
@@ -28,6 +31,7 @@ class FrameTurns {
     advanced_ = advanced_ || commanded_;
     commanded_ = false;
     advance_for_ = viewer;
+    advance_jumped_ = jumped_;
   }
 
   /// When a frame to all is due; infinity if nothing visible has changed.
@@ -44,18 +48,21 @@ class FrameTurns {
 
   /// The viewer that a frame to all need not go to; 0: none.
   proto::ViewerId excluded() const { return commanded_ || ticked_ ? 0 : advance_for_; }
+  /// Whether that viewer has not been shown that the state was replaced, which such a frame tells.
+  bool owes_jump() const { return advance_jumped_ && excluded() != 0; }
   /// Such a frame goes out now.
   /// @param pause  until the next one without a tick of the clock
   void sent(double now, double pause) {
     advance_for_ = excluded();
     if (jumped_) next_jump_ = now + pause;
     next_idle_ = now + pause;
-    commanded_ = ticked_ = advanced_ = jumped_ = false;
+    commanded_ = ticked_ = advanced_ = jumped_ = advance_jumped_ = false;
   }
   void sent_to_one(double now, double pause) { next_idle_ = now + pause; }
 
  private:
   bool commanded_ = false, ticked_ = false, advanced_ = false, jumped_ = false;
+  bool advance_jumped_ = false;      ///< the same as jumped_, for the viewer of the advance
   double next_idle_ = 0;             ///< earliest one without a tick of the clock
   double next_jump_ = 0;             ///< earliest one that may precede those
   proto::ViewerId advance_for_ = 0;  ///< see begin_advance

@@ -272,8 +272,8 @@ class Room {
   void measure_balance();
   bool frames_stand() const;
   double next_frame() const;
-  FrameMaker::Facts frame_facts();
-  Frame encode_frame();
+  FrameMaker::Facts frame_facts(bool jumped);
+  Frame encode_frame(bool jumped);
   void publish(double now);
   void show_to(proto::ViewerId viewer);
   void show_to_those_who_lack(double now);

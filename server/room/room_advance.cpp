@@ -67,14 +67,14 @@ bool Room::advance_wants_forces() const {
 void Room::show_advanced() {
   if (order_.advance->wanted.observe && order_.advance->left == 0) return;
   const Viewer& viewer = viewers_.at(order_.advance->viewer);
-  const Frame frame = encode_frame();
+  const Frame frame = encode_frame(frames_.take_advance_jump());
   const bool full = viewer.wants_forces && frame.with_forces;
   output_.send(order_.advance->viewer,
                {full ? frame.with_forces : frame.bytes, true, Topic::frame, viewer.ticket});
 }
 
 Message Room::observation() {
-  FrameMaker::Facts facts = frame_facts();
+  FrameMaker::Facts facts = frame_facts(frames_.take_advance_jump());
   facts.forces = false;  // the observation has its own
   const Observation seen = observation_of(*world_, *order_.advance->wanted.observe);
   const SharedBytes frame = frame_maker_.make_for_one(

@@ -100,10 +100,11 @@ void Room::tell_changes() {
 
 /// Sends the newest frame to all viewers for which it is news.
 void Room::publish(double now) {
-  Frame frame = encode_frame();
-  frame.at_once = frames_.jumped();
+  Frame frame = encode_frame(frames_.jumped());
+  frame.at_once = frame.jump = frames_.jumped();
   // The result of `advance` goes to its viewer as it requested, until something else changes.
   frame.not_to = frames_.excluded();
+  frame.owes_jump = frames_.owes_jump();
   frames_.sent(now, world_->tick_seconds());
   for (auto& [id, viewer] : viewers_)
     if (id != frame.not_to) viewer.wants_frame = false;
@@ -112,7 +113,7 @@ void Room::publish(double now) {
 
 /// Sends a frame to a viewer that lacks the present one.
 void Room::show_to(proto::ViewerId viewer) {
-  Frame frame = encode_frame();
+  Frame frame = encode_frame(frames_.jumped());
   frame.at_once = true;
   frame.only_to = viewer;
   viewers_.at(viewer).wants_frame = false;
@@ -121,7 +122,7 @@ void Room::show_to(proto::ViewerId viewer) {
 
 /// What a frame of the present state tells besides the world, whose forces are then measured if
 /// they are wanted.
-FrameMaker::Facts Room::frame_facts() {
+FrameMaker::Facts Room::frame_facts(bool jumped) {
   measure_forces();
   if (forces_.in_frames && !world_->reactions())
     within_limit([this] { world_->measure_present_forces(); }, kBetweenTicks);
@@ -129,12 +130,13 @@ FrameMaker::Facts Room::frame_facts() {
   applied.clear();
   for (const auto& [id, viewer] : viewers_)
     if (viewer.applied > 0) applied.push_back({id, viewer.applied});
-  return {frames_.jumped(), paused(), forces_.in_frames, time_.last_tick_done(), epoch_};
+  return {jumped, paused(), forces_.in_frames, time_.last_tick_done(), epoch_};
 }
 
 /// A frame of the present state.
-Frame Room::encode_frame() {
-  const FrameMaker::Facts facts = frame_facts();
+/// @param jumped  whether it tells that the state was replaced
+Frame Room::encode_frame(bool jumped) {
+  const FrameMaker::Facts facts = frame_facts(jumped);
   return frame_maker_.make(*world_, holds_, facts);
 }
 

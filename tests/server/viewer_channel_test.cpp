@@ -212,8 +212,8 @@ TEST_CASE("frames that must arrive keep their order with the answers, and hold t
   CHECK(ticket.use_count() == 2);
   v.stream.drain();
   CHECK(v.stream.written ==
-        std::vector<std::string>{"frame 1", "kept 3", "kept 4", "kept 5", "result", "frame 2"});
-  CHECK(v.channel.frames_sent() == 5);
+        std::vector<std::string>{"frame 1", "kept 3", "kept 4", "kept 5", "result"});
+  CHECK(v.channel.frames_sent() == 4);
 }
 
 TEST_CASE("a close waits for what is queued and says its last word") {
