@@ -49,10 +49,12 @@ class SimulationLoop {
     const bool ticking = room_.ticking();
     if (ticking && !was_ticking_) pacer_.restart(now);
     was_ticking_ = ticking;
+    pacer_.set_interval(room_.tick_interval(), now);
     late_ = now - pacer_.next();
-    ticked_ = ticking && pacer_.take_due(now, room_.tick_interval());
+    ticked_ = ticking && pacer_.take_due(now);
     if (ticked_) room_.tick();
     room_.finish_turn();
+    pacer_.set_interval(room_.tick_interval(), now);  // commands that had to wait may have set it
     return room_.ticking() ? std::min(room_.next_wake(), pacer_.next()) : room_.next_wake();
   }
 

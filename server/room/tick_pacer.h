@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+
 namespace weft::server {
 
 /// Decides when the next tick is due. A few late ticks are caught up; beyond that the backlog is
@@ -11,20 +13,25 @@ class TickPacer {
   /// The next tick is due now.
   void restart(double now) { next_ = now; }
 
+  /// Ticks have this much real time between them from now on [s]. What is left of the wait for the
+  /// next one passes at the new speed.
+  void set_interval(double interval, double now) {
+    if (interval == interval_) return;
+    if (next_ > now && interval_ > 0) next_ = now + (next_ - now) * (interval / interval_);
+    interval_ = interval;
+  }
+
   /// Whether a tick is due; if so, the next one is due one interval later.
-  /// @param interval  real time between ticks [s]
-  bool take_due(double now, double interval) {
+  bool take_due(double now) {
     if (now < next_) return false;
-    const double oldest = now - kMostLateTicks * interval;
-    if (next_ < oldest) next_ = oldest;
-    next_ += interval;
+    next_ = std::max(next_, now - kMostLateTicks * interval_) + interval_;
     return true;
   }
 
   double next() const { return next_; }
 
  private:
-  double next_ = 0;
+  double next_ = 0, interval_ = 0;
 };
 
 /// Simulated per real time, over the last one to two seconds.

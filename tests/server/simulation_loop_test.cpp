@@ -1,5 +1,8 @@
 #include "server/room/simulation_loop.h"
 
+#include <cmath>
+#include <cstdint>
+#include <random>
 #include <vector>
 
 #include <catch2/catch.hpp>
@@ -145,6 +148,50 @@ TEST_CASE("a turn in which an advance ends is not followed by an idle one, but b
   l.room.advance_left = 1;
   l.room.running = true;
   CHECK(l.loop.turn() <= l.fake.now);
+}
+
+TEST_CASE("a tick is due for each interval that passes, each part of it at the speed of its time") {
+  std::mt19937 random(7);
+  std::uniform_real_distribution<double> exponent(-2, 1), pause(0, 0.2);
+  for (const double rate : {1.0, 5.0, 60.0, 1000.0}) {
+    TickPacer pacer;
+    double now = 100, speed = 1, passed = 0;  // simulated [s]
+    std::uint64_t ticks = 0;
+    pacer.restart(now);
+    pacer.set_interval(1 / rate, now);
+    const auto run_to = [&](double end) {
+      while (pacer.next() <= end) {
+        passed += (pacer.next() - now) * speed;
+        now = pacer.next();
+        REQUIRE(pacer.take_due(now));
+        CHECK(passed * rate == Approx(static_cast<double>(ticks++)).margin(1e-6));
+      }
+      passed += (end - now) * speed;
+      now = end;
+    };
+    for (int k = 0; k < 300; ++k) {
+      run_to(now + pause(random));
+      speed = std::pow(10, exponent(random));
+      pacer.set_interval(1 / (rate * speed), now);
+    }
+    CHECK(static_cast<double>(ticks) >= passed * rate);
+  }
+}
+
+TEST_CASE(
+    "a room that was set to 0.01 of its speed ticks within a tick's time once it is set back") {
+  for (const double rate : {1.0, 5.0, 60.0}) {
+    Loop l;
+    l.room.interval = 1 / rate;
+    l.run_for(1.5);
+    l.room.interval = 100 / rate;
+    l.run_for(1.5 / rate);
+    const int before = l.room.ticks;
+    l.room.interval = 1 / rate;
+    l.run_for(1.01 / rate);
+    CHECK(l.room.ticks - before >= 1);
+    CHECK(l.room.ticks - before <= 2);  // nothing is caught up with
+  }
 }
 
 TEST_CASE("the real-time factor is 1 at full speed and tells slow motion") {
