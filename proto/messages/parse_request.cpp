@@ -2,6 +2,7 @@
 // description in messages/ says.
 
 #include <algorithm>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -123,6 +124,16 @@ Result<Request> parse_request(std::string_view text) {
   error.id = request.id;
   if (operation != nullptr) error.command = operation->name;
   return error;
+}
+
+std::optional<std::string> find_token(std::string_view text) {
+  const Result<json> object = parse_object(text);
+  if (!object || !object->contains("token") || object->value("op", json()) != Hello::kOp)
+    return std::nullopt;
+  const json bare = {{"token", object->at("token")}};
+  FieldReader in(bare);
+  const Command hello = read_as<Hello>(in);
+  return in.ok() ? std::get<Hello>(hello).token : std::nullopt;
 }
 
 }  // namespace weft::proto

@@ -57,6 +57,7 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   void close(std::uint16_t code, const std::string& reason) override;
   void on_welcomed() override {
     pauses_ = false;
+    if (refused_) refuse(*std::exchange(refused_, std::nullopt));
     read();
   }
 
@@ -94,8 +95,9 @@ class Session : public ViewerStream, public std::enable_shared_from_this<Session
   RateLimit messages_, flood_, acks_;
   asio::steady_timer watch_, cut_;
   proto::ViewerId viewer_;
-  ViewerChannel* channel_ = nullptr;  // of the hub; null before joining and after leaving
-  std::uint32_t number_ = 0;          // of the last text message
+  ViewerChannel* channel_ = nullptr;     // of the hub; null before joining and after leaving
+  std::uint32_t number_ = 0;             // of the last text message
+  std::optional<proto::Error> refused_;  // its first message, though it is let in
   int wrong_tokens_ = 0;
   double most_error_ = proto::kUsualPackedError;  // that it allows, if packed [m]
   double alive_ = 0;
@@ -157,23 +159,25 @@ void Session::await_token() {
   read();
 }
 
-/// The first message, where a token is needed: it has to be a `hello` with one that is known.
+/// The first message, where a token is needed: it has to be a `hello` with one that is known. What
+/// else is wrong in it is refused after the welcome.
 void Session::on_first(std::string_view text) {
   ++number_;
   auto request = proto::parse_request(text);
-  auto* const hello = request ? std::get_if<proto::Hello>(&request->command) : nullptr;
-  const auto grant = hello && hello->token ? context_.tokens.find(*hello->token, room_->name())
-                                           : std::optional<Grant>();
+  const auto token = proto::find_token(text);
+  const auto grant = token ? context_.tokens.find(*token, room_->name()) : std::optional<Grant>();
   if (grant) {
     awaits_token_ = false;
-    hello->token.reset();
     join(*grant);
+    if (!request) refused_ = request.error();
+    if (!request) return;
+    std::get<proto::Hello>(request->command).token.reset();
     return put(*request);
   }
   const proto::Error refusal =
       request ? unknown_token(true, proto::name_of(request->command), request->id)
               : unknown_token(true, request.error().command, request.error().id);
-  const char* const why = hello && hello->token ? "this token is not known" : "a token is needed";
+  const char* const why = token ? "this token is not known" : "a token is needed";
   pauses_ = true;
   watch_.expires_after(duration_of(kWrongTokenSeconds));
   watch_.async_wait([self = shared_from_this(), refusal, why](error_code error) {
@@ -216,8 +220,7 @@ void Session::on_text(std::string_view text) {
     return close_by_policy(kClosePolicy, "far too many messages a second");
   if (!messages_.take(received)) return on_excess(text);
   const auto request = proto::parse_request(text);
-  if (request) return on_request(*request, received);
-  refuse(request.error());
+  return request ? on_request(*request, received) : refuse(request.error());
 }
 
 void Session::on_request(const proto::Request& request, double received) {

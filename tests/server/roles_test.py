@@ -94,6 +94,23 @@ class WithTokens(SocketTest):
         frame = await named.wait_frame(lambda f: True)
         self.assertGreater(frame.vertices, 0)
 
+    async def test_what_else_is_wrong_beside_a_known_token_is_refused_by_its_name_and_the_viewer_is_in(self):
+        wrong = {"name": ["x" * 40, "", 5, "a\u0007"], "color": ["red", 7]}
+        for field, values in wrong.items():
+            for value in values:
+                viewer = await self.enter(OPERATOR, **{field: value})
+                error = await viewer.wait_text(lambda m: m["op"] != "welcome" and m.get("id") == "hello")
+                self.assertEqual((error["op"], error["command"], error["field"]), ("error", "hello", field))
+                self.assertNotEqual(error["code"], "not_allowed")
+                ops = [m["op"] for m in viewer.texts if m["op"] in ("welcome", "error")]
+                self.assertEqual(ops, ["welcome", "error"])
+                self.assertEqual((await viewer.ask("hash"))["op"], "result")
+        stranger = await enter(self.server)
+        self.addAsyncCleanup(stranger.socket.close)
+        await stranger.tell("hello", id=1, token="guessed-0123456789", name="x" * 40)
+        self.assertEqual((await stranger.wait_text(lambda m: m.get("id") == 1))["field"], "token")
+        self.assertEqual(await stranger.wait_closed(), 4003)
+
     async def test_a_link_counts_in_its_room_and_who_makes_a_copy_operates_that_alone(self):
         teacher = await self.enter(OPERATOR)
         link = (await teacher.ask("invite", right="hold"))["token"]
