@@ -177,11 +177,15 @@ void Room::let_go_forbidden(ViewerId viewer) {
 
 /// Why a viewer may not touch a pin: only operators may touch those of others.
 std::optional<proto::Error> Room::check_owner(ViewerId viewer, PinId pin) const {
-  if (viewers_.at(viewer).info.role != Role::viewer || holds_.owner(pin) == viewer)
-    return std::nullopt;
-  proto::Error error = field_error(proto::ErrorCode::not_allowed, "another viewer set this pin",
-                                   "pin", pin, "its owner or an operator can release it");
-  error.limit = proto::Limit{{}, {}, {}, {"owner", "operator", "admin"}};
+  const ViewerId owner = holds_.owner(pin);
+  if (viewers_.at(viewer).info.role != Role::viewer || owner == viewer) return std::nullopt;
+  proto::Error error =
+      owner == 0 ? field_error(proto::ErrorCode::not_allowed, "this pin is the scene's own", "pin",
+                               pin, "an operator can move or release it")
+                 : field_error(proto::ErrorCode::not_allowed, "another viewer set this pin", "pin",
+                               pin, "its owner or an operator can move or release it");
+  error.limit = proto::Limit{{}, {}, {}, {"operator", "admin"}};
+  if (owner != 0) error.limit->allowed.insert(error.limit->allowed.begin(), "owner");
   return error;
 }
 

@@ -1,7 +1,9 @@
 // A mute holds, and pins belong, to who comes again with its token.
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 #include <catch2/catch.hpp>
 
@@ -131,6 +133,30 @@ TEST_CASE("a token that is told counts as a command until it is taken, also behi
   room.t.tell(kOperator, R"({"op":"pause"})");
   room.t.room->finish_turn();
   CHECK(taken == 4);
+}
+
+TEST_CASE("who may not touch a pin is told whose it is, and who may") {
+  Class room;
+  const auto max = room.come(7), lea = room.come(8);
+  const json own = room.t.say(max, R"({"op":"pin","id":1,"particle":30})");
+  REQUIRE(own["op"] == "result");
+  const std::uint32_t scenes = room.t.room->world().pins().list.front().id;
+  const std::pair<json, const char*> pins[] = {{scenes, "scene"}, {own["pin"], "another viewer"}};
+  for (const auto& [pin, whose] : pins) {
+    const json commands[] = {{{"op", "release"}, {"pin", pin}, {"id", 2}},
+                             {{"op", "move"}, {"pin", pin}, {"position", {0, 1, 0}}, {"id", 2}},
+                             {{"op", "move"}, {"pin", pin}, {"stop", true}, {"id", 2}}};
+    const bool of_scene = pin == json(scenes);
+    for (const json& command : commands) {
+      const json error = room.t.say(lea, command.dump());
+      CHECK(error["code"] == "not_allowed");
+      CHECK(error["field"] == "pin");
+      CHECK(error["message"].get<std::string>().find(whose) != std::string::npos);
+      const json may = of_scene ? json{"operator", "admin"} : json{"owner", "operator", "admin"};
+      CHECK(error["limit"]["allowed"] == may);
+      CHECK((error["hint"].get<std::string>().find("owner") == std::string::npos) == of_scene);
+    }
+  }
 }
 
 }  // namespace weft::server
