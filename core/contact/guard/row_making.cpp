@@ -40,6 +40,7 @@ auto first_jammed(auto& jammed, std::uint64_t key) {
 /// Whether a pair is jammed, by its key.
 template <class Real>
 bool is_jammed(const RowSource<Real>& source, std::uint64_t key) {
+  if (source.jammed.empty()) return false;  // as nearly always
   const auto found = first_jammed(source.jammed, key);
   return found != source.jammed.end() && found->key == key;
 }
@@ -144,10 +145,11 @@ bool make_row(const RowSource<Real>& source, const RowMaking<Real>& making,
               const GuardedPair<Real>& pair, const PairSeparation<Real>& s, GuardRow<Real>& row) {
   const GuardedCloths<Real>& cloths = source.cloths;
   if (s.gap > cloths.thickest * Real(kRowReach) || !(s.gap > 0)) return false;
-  const bool jammed = is_jammed(source, key_of(pair));
-  const auto pushes = [&] { return !jammed && has_pushed(making, key_of(pair)); };
+  const auto pushes = [&] {
+    return has_pushed(making, key_of(pair)) && !is_jammed(source, key_of(pair));
+  };
   const bool passes = !carries(cloths, source.x, pair, s, pushes);
-  if (passes && !jammed) return false;
+  if (passes && !is_jammed(source, key_of(pair))) return false;
   Real approach = 0;
   for (std::size_t k = 0; k < 4; ++k)
     approach -= s.weight[k] * s.normal.dot(source.state.v[at_index(pair.particle[k])]);
