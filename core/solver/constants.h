@@ -48,8 +48,8 @@ inline constexpr double kMostBetweenPasses = 2.8;
 /// meshes at high tick rates. Smaller: waves of few centimetres may lose a quarter of their law.
 inline constexpr double kFastestBending = 1257;
 
-/// A group of three passes takes at most this long, rounding included [s]. Larger: in slow ticks the
-/// dashpots see less of what swings. Smaller: more passes.
+/// A group of three passes takes at most this long, rounding included [s]. Larger: in slow ticks
+/// the dashpots see less of what swings. Smaller: more passes.
 inline constexpr double kGroupSeconds = 1.001 / 60;
 
 /// Most that the turning of the normal adds to the gradient of a curvature, over what bending gives

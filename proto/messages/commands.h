@@ -53,8 +53,8 @@ Result<Request> parse_request(std::string_view text);
 /// building a tree. Empty if the text is not an object, does not end with it, or has no id or two.
 std::optional<Id> find_id(std::string_view text);
 
-/// The token of a `hello`, also of one that `parse_request` refuses for another field; nothing if it
-/// has none that can be read, or is no `hello`.
+/// The token of a `hello`, also of one that `parse_request` refuses for another field; nothing if
+/// it has none that can be read, or is no `hello`.
 std::optional<std::string> find_token(std::string_view text);
 
 /// The JSON text that parses to the same request; for logs and clients.

@@ -51,8 +51,8 @@ struct Chain {
     work.prepare(model);
     Grabs<double> grabs;
     Profile profile;
-    advance_relaxation<double>(model, surroundings, solver, dt, {0, substeps, substeps}, grabs, {}, state, work,
-                               profile);
+    advance_relaxation<double>(model, surroundings, solver, dt, {0, substeps, substeps}, grabs, {},
+                               state, work, profile);
   }
   double place(std::size_t i) const { return state.x[i][0]; }
 };
