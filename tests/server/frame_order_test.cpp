@@ -13,6 +13,7 @@
 #include "proto/frames/packed_frame.h"
 #include "server/net/hub.h"
 #include "tests/server/fakes.h"
+#include "tests/server/welcomed_viewer.h"
 
 namespace weft::server {
 namespace {
@@ -151,12 +152,8 @@ TEST_CASE("a viewer that declines the frames of its advance is told the jump by 
   REQUIRE(t.output.offered.back().not_to == 1);
   CHECK(t.output.offered.back().owes_jump);
 
-  FakeClock fake;
-  Metrics metrics;
-  Hub hub(fake.clock(), 60, {}, metrics);
-  FakeStream stream;
-  stream.channel = &hub.add(1, stream);
-  hub.welcome_done(1);
+  WelcomedViewer viewer;
+  auto& [fake, metrics, hub, stream] = viewer;
   Frame others = frame_of(1, true);
   others.not_to = 1;
   others.owes_jump = true;

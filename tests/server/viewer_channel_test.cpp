@@ -3,6 +3,7 @@
 #include "server/net/close_codes.h"
 #include "server/net/hub.h"
 #include "tests/server/fakes.h"
+#include "tests/server/welcomed_viewer.h"
 
 namespace weft::server {
 namespace {
@@ -266,12 +267,8 @@ TEST_CASE("a viewer hears nothing of the room before it is welcomed") {
 }
 
 TEST_CASE("a frame of the mesh before is not sent after a new mesh") {
-  FakeClock fake;
-  Metrics metrics;
-  Hub hub(fake.clock(), 60, {}, metrics);
-  FakeStream stream;
-  stream.channel = &hub.add(1, stream);
-  hub.welcome_done(1);
+  WelcomedViewer viewer;
+  auto& [fake, metrics, hub, stream] = viewer;
   hub.offer_frame(fake_frame(1));
   hub.offer_frame(fake_frame(2));
   hub.offer_mesh(99, SharedBytes(std::string("mesh")));
@@ -286,12 +283,8 @@ TEST_CASE("a frame of the mesh before is not sent after a new mesh") {
 }
 
 TEST_CASE("nobody wants frames when all viewers have asked for none or have gone") {
-  FakeClock fake;
-  Metrics metrics;
-  Hub hub(fake.clock(), 60, {}, metrics);
-  FakeStream stream;
-  stream.channel = &hub.add(1, stream);
-  hub.welcome_done(1);
+  WelcomedViewer viewer;
+  auto& [fake, metrics, hub, stream] = viewer;
   CHECK(hub.wants_frames());
   hub.set_most_frames(1, 0);
   CHECK_FALSE(hub.wants_frames());
@@ -302,12 +295,8 @@ TEST_CASE("nobody wants frames when all viewers have asked for none or have gone
 }
 
 TEST_CASE("a viewer is told how many frames were left out for it") {
-  FakeClock fake;
-  Metrics metrics;
-  Hub hub(fake.clock(), 60, {}, metrics);
-  FakeStream stream;
-  stream.channel = &hub.add(1, stream);
-  hub.welcome_done(1);
+  WelcomedViewer viewer;
+  auto& [fake, metrics, hub, stream] = viewer;
   hub.poll();
   for (std::uint32_t i = 1; i <= 40; ++i) {
     hub.offer_frame(fake_frame(i));
