@@ -323,9 +323,13 @@ void add_sling_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force) {
 }
 
 template <class Real>
+void begin_tick(Grabs<Real>& grabs) {
+  for (Grab<Real>& grab : grabs.list) grab.given.setZero();
+}
+
+template <class Real>
 void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   for (Grab<Real>& grab : grabs.list) {
-    grab.given.setZero();
     for (std::size_t n = 0; n < grab.particles.size(); ++n)
       grab.velocity[n] = v[static_cast<std::size_t>(grab.particles[n])];
   }
@@ -361,6 +365,7 @@ double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
                                 const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);    \
   template void note_resistance(const Vec3Array<Real>&, Grabs<Real>&);                       \
   template void add_sling_forces(const Grabs<Real>&, Vec3Array<Real>&);                      \
+  template void begin_tick(Grabs<Real>&);                                                    \
   template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                        \
   template double work_of_hands(const Vec3Array<Real>&, Grabs<Real>&);
 WEFT_INSTANTIATE(float)

@@ -167,8 +167,11 @@ void note_resistance(const Vec3Array<Real>& v, Grabs<Real>& grabs);
 template <class Real>
 void add_sling_forces(const Grabs<Real>& grabs, Vec3Array<Real>& force);
 
-/// Call at the start of a tick: the held particles have the velocities `v` [m/s], and nothing was
-/// given to them yet.
+/// The hands have given nothing in the tick that begins.
+template <class Real>
+void begin_tick(Grabs<Real>& grabs);
+
+/// Call before some substeps of a tick: the held particles have the velocities `v` [m/s].
 template <class Real>
 void see_velocities(const Vec3Array<Real>& v, Grabs<Real>& grabs);
 

@@ -184,8 +184,7 @@ const TickReport& World<Real>::step() {
     sample_surroundings();                         // gravity, damping, the air at each particle
     lead_hands(tick_seconds(), state_.x, grabs_);  // no farther than the cloth can follow
     // Each substep: forces, kick, contact and drift; see advance_together in solver/verlet.cpp and
-    // Collision::before_drift. A tick that blew up, or that another solver must step, is done again
-    // from its start with other substeps.
+    // Collision::before_drift. A tick that blew up, or is another solver's, is done again.
     advance_or_recover(substeps);
     finish_targets();  // what was reached, held back or gripped
     put_to_sleep();
@@ -338,6 +337,7 @@ AdvanceResult World<Real>::advance(SolverKind kind, int substeps) {
   contact_.objects.begin_tick(tick_seconds(), &colliders_);
   if (contact_.seed) contact_.seed->begin_tick(tick_seconds(), &colliders_);
   pin_drive_.begin_tick(tick_seconds(), model_, pins_);
+  weft::begin_tick(grabs_);
   if (contact_.guard) contact_.guard->begin_tick();
   if (energy_) energy_->meter.begin_tick();
   if (supports_.wanted) supports_.held.begin_tick(model_, pins_);

@@ -75,13 +75,18 @@ TEST_CASE("in each tick objects get the momentum that gravity gave and the cloth
 }
 
 TEST_CASE("in each tick pins and hands give what momentum the cloth gains beside gravity") {
-  const auto solver =
-      GENERATE(as<std::string>(), "grid", "hinges", "swept", "guarded", "mesh", "damped");
+  const auto solver = GENERATE(as<std::string>(), "grid", "hinges", "swept", "guarded", "mesh",
+                               "damped", "damped several times a tick");
   CAPTURE(solver);
   ClothDef cloth = test::flat_cloth(9, 9, 0.4, 0.4);
   if (solver == "mesh") cloth = test::triangle_sheet(test::Cut::irregular, 0.4, 0.4, 0.05, 0.5);
   if (solver == "hinges") cloth.bending_model = BendingModel::hinges;
   cloth.fabric.bending_damping = solver == "damped" ? 10 : 1e-4;
+  if (solver == "damped several times a tick") {
+    cloth = test::flat_cloth(13, 13, 0.3, 0.3);
+    cloth.fabric.bending_damping = 1e-2;
+    cloth.fabric.bending_warp = cloth.fabric.bending_weft = 1e-4;
+  }
   WorldDef def = test::empty_world(cloth);
   def.environment.gravity = kGravity;
   def.pins = {{Corner::top_left, 0.11, {}}, {Corner::bottom_right, 0.2, {}}};
