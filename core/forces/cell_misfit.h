@@ -45,7 +45,9 @@ template <class Real>
 struct MisfitLaw {
   Real stiffness = 0;                      ///< E [N m], the part of it; 0: no springs of the fabric
   Real per_d2 = 0;                         ///< 1/(2 d^2) [1/m^2]
-  Real second = 0, third = 0, fourth = 0;  ///< coefficients of p
+  Real second = 0, third = 0, fourth = 0;  ///< coefficients of p / w
+  /// Of twice the integral of p, over w^2.
+  Real mean_second = 0, mean_third = 0, mean_fourth = 0;
 
   MisfitLaw() = default;
   explicit MisfitLaw(const GridSprings<Real>& springs) {
@@ -67,13 +69,16 @@ struct MisfitLaw {
     second = static_cast<Real>(3 * s);
     third = static_cast<Real>(18 * s * s - 2 * m);
     fourth = static_cast<Real>(135 * s * s * s - 30 * s * m + 2.5 * n);
+    mean_second = second / Real(1.5);
+    mean_third = third / 2;
+    mean_fourth = fourth / Real(2.5);
   }
 
   /// p / w.
   Real rise(Real w) const { return 1 + w * (second + w * (third + w * fourth)); }
   /// Twice the integral of p, over w^2.
   Real mean_rise(Real w) const {
-    return 1 + w * (second / Real(1.5) + w * (third / 2 + w * fourth / Real(2.5)));
+    return 1 + w * (mean_second + w * (mean_third + w * mean_fourth));
   }
 
  private:

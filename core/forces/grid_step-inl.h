@@ -42,12 +42,14 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real 
 
 /// Lines of scratch for the forces on a row. A force on the next column, or the one after it, is
 /// stored at its source and read with an offset: aligned stores are cheap, and reads before a
-/// line's start hit the cleared tail of the previous line. Forces on the row below are kept for
-/// that row.
+/// line's start hit the cleared tail of the previous line. A processor must wait with such a read
+/// until what it straddles has left the store buffer; all components are stored first, so that it
+/// has. Forces on the row below are kept for that row.
 template <class Real>
 struct ForceLines {
   Real *along, *down, *falling, *rising;  ///< factors of the springs
-  Real *here, *right, *ahead;             ///< on this column, the next one, the one after it
+  Real *here, *right, *ahead;             ///< on this column, the next one, the one after it,
+                                          ///< per component
   Real* carry;                            ///< on the row below, per component
   Real* bent;                             ///< bending stencils centred there, per component
   Real *corner_in, *corner_out;           ///< on the row below, one column on: from above, to below
@@ -58,14 +60,16 @@ struct ForceLines {
 
   HWY_INLINE ForceLines(const GridView<Real>& g, std::ptrdiff_t r) : step(g.scratch_line()) {
     Real* at = g.scratch;
-    for (Real** line : {&along, &down, &falling, &rising, &here, &right, &ahead}) {
+    for (Real** line : {&along, &down, &falling, &rising}) {
       *line = at;
       at += step;
     }
-    carry = at;
-    bent = at + 3 * step;
-    corner_in = at + (r % 2 == 0 ? 6 : 9) * step;
-    corner_out = at + (r % 2 == 0 ? 9 : 6) * step;
+    for (Real** lines : {&here, &right, &ahead, &carry, &bent}) {
+      *lines = at;
+      at += 3 * step;
+    }
+    corner_in = at + (r % 2 == 0 ? 0 : 3) * step;
+    corner_out = at + (r % 2 == 0 ? 3 : 0) * step;
     const Real* const row = g.row[r].coefficients;
     softened = g.misfit.stiffness != 0 ? g.scratch + kTwistLine * step : nullptr;
     twist = softened != nullptr ? softened : row + kTwist * g.line;
@@ -79,11 +83,11 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
                                 const ForceLines<Real>& to) {
   const GridSprings<Real>& s = g.springs;
   const std::ptrdiff_t below = g.pitch();
+  if (to.softened != nullptr) soften_twist(g, r, to.softened);
   compute_factors(g, r, s.rest_warp, s.warp_time, kWarp, 0, 1, to.along);
   compute_factors(g, r, s.rest_weft, s.weft_time, kWeft, 0, below, to.down);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 0, below + 1, to.falling);
   compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 1, below, to.rising);
-  if (to.softened != nullptr) soften_twist(g, r, to.softened);
 }
 
 /// One component of the forces of springs and quadratic bending that start on a row, each computed
@@ -100,6 +104,8 @@ HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int com
   const Real* const x = g.motion + r * pitch + component * line;
   const std::ptrdiff_t own = component * to.step;
   Real *const carry = to.carry + own, *const bent = to.bent + own;
+  Real *const here_to = to.here + own, *const right_to = to.right + own,
+              *const ahead = to.ahead + own;
   const Real* const corner_in = to.corner_in + own;
   Real* const corner_out = to.corner_out + own;
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
@@ -122,11 +128,11 @@ HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int com
     here = hn::Sub(here, hn::Add(hn::Add(twist, bend_right), bend_below));
     here = fused(d, along, f_along, here);
     here = fused(d, down, f_down, here);
-    hn::StoreU(fused(d, falling, f_falling, here), d, to.here + c);
+    hn::StoreU(fused(d, falling, f_falling, here), d, here_to + c);
     V right = fused(d, bend_right, two, twist);
     right = fused_minus(d, along, f_along, right);
-    hn::StoreU(fused(d, rising, f_rising, right), d, to.right + c);
-    hn::StoreU(bend_right, d, to.ahead + c);
+    hn::StoreU(fused(d, rising, f_rising, right), d, right_to + c);
+    hn::StoreU(bend_right, d, ahead + c);
     V below = fused(d, bend_below, two, hn::Sub(twist, bend_here));
     below = fused_minus(d, down, f_down, below);
     hn::StoreU(fused_minus(d, rising, f_rising, below), d, carry + c);
@@ -136,12 +142,16 @@ HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int com
 
 /// Calls sink(column, force) for the vectors of a row, after `add_up_forces`.
 template <class Real, class Sink>
-HWY_INLINE void visit_forces(const GridView<Real>& g, const ForceLines<Real>& from, Sink&& sink) {
+HWY_INLINE void visit_forces(const GridView<Real>& g, const ForceLines<Real>& from, int component,
+                             Sink&& sink) {
   const GridTag<Real> d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));
+  const std::ptrdiff_t own = component * from.step;
+  const Real *const here = from.here + own, *const right = from.right + own - 1,
+                    *const ahead = from.ahead + own - 2;
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes)
-    sink(c, hn::Add(hn::LoadU(d, from.here + c),
-                    hn::Sub(hn::LoadU(d, from.right + c - 1), hn::LoadU(d, from.ahead + c - 2))));
+    sink(c, hn::Add(hn::LoadU(d, here + c),
+                    hn::Sub(hn::LoadU(d, right + c), hn::LoadU(d, ahead + c))));
 }
 
 /// The first row receives no forces from above, and the left border none from the left.
@@ -163,7 +173,7 @@ HWY_INLINE void internal_forces(const GridView<Real>& g) {
     for (int component = 0; component < 3; ++component) {
       add_up_forces(g, r, component, lines);
       Real* const to = g.external + (3 * r + component) * g.line;
-      visit_forces(g, lines, [&](std::ptrdiff_t c, auto force) HWY_ATTR {
+      visit_forces(g, lines, component, [&](std::ptrdiff_t c, auto force) HWY_ATTR {
         hn::StoreU(force, GridTag<Real>(), to + c);
       });
     }
@@ -186,7 +196,7 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
           dt = hn::Set(d, step.dt);
   const V fall = hn::Set(d, step.scaled_dt * step.gravity[component]);
   const bool drifts = step.dt != 0;
-  visit_forces(g, from, [&](std::ptrdiff_t c, V force) HWY_ATTR {
+  visit_forces(g, from, component, [&](std::ptrdiff_t c, V force) HWY_ATTR {
     V pull = force;
     if constexpr (Pulled) {
       pull = hn::LoadU(d, external + c);
@@ -227,8 +237,8 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
   for (std::ptrdiff_t r = first; r < last; ++r) {
     const ForceLines<Real> lines(g, r);
     compute_factors(g, r, lines);
+    for (int component = 0; component < 3; ++component) add_up_forces(g, r, component, lines);
     for (int component = 0; component < 3; ++component) {
-      add_up_forces(g, r, component, lines);
       if (step.has_external)
         move_row<true>(g, r, component, step, lines, power);
       else

@@ -63,7 +63,7 @@ struct GridView {
 
 /// Lines of scratch: factors of springs, forces for other columns, forces carried to the row below
 /// (see grid_step-inl.h), powers per column, stiffness of the cells' twist.
-inline constexpr int kPowerLine = 19, kTwistLine = 20, kGridScratchLines = 21;
+inline constexpr int kPowerLine = 25, kTwistLine = 26, kGridScratchLines = 27;
 
 /// Sum of a pass's values per column, in column order, so that the width of a vector does not
 /// matter.
