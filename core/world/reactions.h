@@ -5,7 +5,7 @@
 
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_model.h"
-#include "core/contact/objects/contact_log.h"
+#include "core/contact/contact_tally.h"
 #include "core/solver/held_forces.h"
 
 // Forces between the cloth and its supports.
@@ -23,8 +23,7 @@ struct PinReaction {
 struct Reactions {
   std::uint64_t tick = 0;  ///< to which they belong
 
-  /// Contacts of the cloth with objects, by object, then with itself. Only forces between cloths
-  /// are those of the tick's last substep.
+  /// Contacts of the cloth with objects, by object, then with itself.
   std::vector<ContactPoint> contacts;
 
   /// For each pin, in their order. A particle with several pins is shared evenly. Empty if the

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cassert>
 
-#include "core/contact/guard/guard_contacts.h"
 #include "core/stop_signal.h"
 #include "core/world/crossing_counter.h"
 #include "core/world/world.h"
@@ -54,7 +53,9 @@ void World<Real>::take_reactions() {
   }
   if (contact_.seed) found.colliders.clear();  // it moves the cloth without telling its impulses
   if (contact_.guard) {
-    for (const ContactPoint& contact : contacts_of(*contact_.guard, state_.x, tick_seconds()))
+    const ClothGuard<Real>& guard = *contact_.guard;
+    for (const ContactPoint& contact :
+         contacts_of(guard.log(), guard.rows(), state_.x, tick_seconds()))
       found.contacts.push_back(contact);
   }
   if (solver_of(def_) != SolverKind::relaxation)

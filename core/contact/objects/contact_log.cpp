@@ -1,4 +1,4 @@
-// Adds up the impulses of contacts over a tick.
+// Begins the log of contacts with objects, and orders what is read out of it.
 
 #include "core/contact/objects/contact_log.h"
 
@@ -15,29 +15,16 @@ void ContactLog::want(bool contacts, bool each) {
 }
 
 void ContactLog::clear() {
-  for (const Slot& slot : slots_) first_slot_[at_index(slot.contact.particle[0])] = kNone;
-  slots_.clear();
+  tally_.clear();
   sums_.clear();
   squeezes_.clear();
   entries_.clear();
 }
 
-/// The slots as contacts, by object, number of particles and particles.
-std::vector<ContactPoint> ContactLog::sorted(double seconds) {
-  std::vector<const Slot*> order;
-  for (const Slot& slot : slots_) order.push_back(&slot);
+void ContactLog::sort(std::vector<ContactPoint>& contacts) {
   const auto key = [](const ContactPoint& c) { return std::tie(c.collider, c.count, c.particle); };
-  std::sort(order.begin(), order.end(),
-            [&key](const Slot* a, const Slot* b) { return key(a->contact) < key(b->contact); });
-  std::vector<ContactPoint> contacts;
-  contacts.reserve(order.size());
-  for (const Slot* slot : order) {
-    ContactPoint& contact = contacts.emplace_back(slot->contact);
-    if (slot->along.norm() > 0) contact.normal = slot->along.normalized();
-    contact.normal_force = contact.normal.dot(slot->impulse) / seconds;
-    contact.friction = slot->impulse / seconds - contact.normal * contact.normal_force;
-  }
-  return contacts;
+  std::sort(contacts.begin(), contacts.end(),
+            [&key](const ContactPoint& a, const ContactPoint& b) { return key(a) < key(b); });
 }
 
 }  // namespace weft

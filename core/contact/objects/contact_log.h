@@ -1,34 +1,15 @@
 #pragma once
 
-#include <array>
 #include <cassert>
-#include <cstdint>
 #include <utility>
 #include <vector>
 
-#include "core/cloth/cloth_state.h"
+#include "core/contact/contact_tally.h"
 #include "core/types.h"
 
-// Contacts and their mean forces over a tick.
+// Contacts with objects and their mean forces over a tick.
 
 namespace weft {
-
-/// A contact as it is told to others: one of the cloth with an object, or of cloths with each
-/// other.
-struct ContactPoint {
-  Index collider = kNone;  ///< the object; kNone: the other side is cloth too
-  int count = 0;           ///< particles in it: 1 to 3 with an object, 4 of cloths
-  int first_side = 0;      ///< how many belong to the side that the normal points to
-  std::array<Index, 4> particle = {0, 0, 0, 0};
-  std::array<double, 4> weight = {0, 0, 0, 0};  ///< negative on the other side of cloths
-  Vec3d point = Vec3d::Zero();                  ///< of the first side's mid-surface [m]
-  Vec3d normal = Vec3d::Zero();                 ///< unit, towards the first side
-  double gap = 0;                               ///< between the mid-surface and the other side [m]
-  double normal_force = 0;                      ///< on the first side along the normal [N]
-  Vec3d friction = Vec3d::Zero();               ///< on the first side, across the normal [N]
-
-  Vec3d force() const { return normal * normal_force + friction; }
-};
 
 /// Impulses of contacts with objects over a tick, if they are wanted; else it stays empty.
 ///
@@ -120,27 +101,17 @@ class ContactLog {
     Vec3d impulse = Vec3d::Zero();  ///< [N s]
     double mass = 0;                ///< impulse for a change of velocity of its point [kg]
   };
-  /// A contact with all that it got in this tick. Several triangles of an object may push the same
-  /// particles: the geometry is that of the last, friction what goes across the common direction.
-  struct Slot {
-    ContactPoint contact;
-    double offset = 0;              ///< of the plane [m]
-    Vec3d impulse = Vec3d::Zero();  ///< [N s]
-    Vec3d along = Vec3d::Zero();    ///< its parts along the normals, and squeezes [N s]
-    Index next = kNone;             ///< another with the same first particle
-  };
 
-  static ContactPoint entry_of(const auto& row) {
+  static ContactPoint contact_of(const auto& row) {
     ContactPoint c;
     c.collider = row.collider;
     c.count = c.first_side = static_cast<int>(row.count);
-    for (std::size_t k = 0; k < row.count; ++k) c.particle[k] = row.particle[k];
-    take_plane(row, c);
-    return c;
-  }
-  static void take_plane(const auto& row, ContactPoint& c) {
-    for (std::size_t k = 0; k < row.count; ++k) c.weight[k] = static_cast<double>(row.weight[k]);
+    for (std::size_t k = 0; k < row.count; ++k) {
+      c.particle[k] = row.particle[k];
+      c.weight[k] = static_cast<double>(row.weight[k]);
+    }
     c.normal = row.normal.template cast<double>();
+    return c;
   }
   /// 0 if no impulse can move the row's point.
   static double mass_of(const auto& row, const auto& state) {
@@ -152,15 +123,8 @@ class ContactLog {
     }
     return mobility > 0 ? 1 / mobility : 0;
   }
-  static bool is_of(const ContactPoint& c, const auto& row) {
-    if (c.collider != row.collider || static_cast<std::size_t>(c.count) != row.count) return false;
-    for (std::size_t k = 0; k < row.count; ++k) {
-      if (c.particle[k] != row.particle[k]) return false;
-    }
-    return true;
-  }
   void enter(const auto& row, const Vec3d& impulse) {
-    entries_.push_back({entry_of(row), impulse});
+    entries_.push_back({contact_of(row), impulse});
   }
   void book_sum(const auto& rows, std::size_t r) {
     Vec3d none = Vec3d::Zero();
@@ -171,36 +135,19 @@ class ContactLog {
     impulse.setZero();
     squeeze.setZero();
   }
-  /// Adds impulses to the slot of a row.
+  /// Adds impulses to the contact of a row, which takes over the row's plane.
   void book(const auto& row, const Vec3d& impulse, const Vec3d& squeeze) {
-    Slot& slot = slot_of(row);
-    slot.impulse += impulse + squeeze;
-    slot.along += slot.contact.normal * slot.contact.normal.dot(impulse) + squeeze;
+    TalliedContact& one = tally_.of(contact_of(row), static_cast<double>(row.offset));
+    one.impulse += impulse + squeeze;
+    one.along += one.contact.normal * one.contact.normal.dot(impulse) + squeeze;
   }
-  /// The slot of a row, new or old, with the row's plane.
-  Slot& slot_of(const auto& row) {
-    const auto first = at_index(row.particle[0]);
-    if (first >= first_slot_.size()) first_slot_.resize(first + 1, kNone);
-    Index at = first_slot_[first];
-    while (at != kNone && !is_of(slots_[at_index(at)].contact, row)) at = slots_[at_index(at)].next;
-    if (at == kNone) {
-      at = static_cast<Index>(slots_.size());
-      slots_.emplace_back();
-      slots_.back().contact = entry_of(row);
-      slots_.back().next = std::exchange(first_slot_[first], at);
-    }
-    Slot& slot = slots_[at_index(at)];
-    take_plane(row, slot.contact);
-    slot.offset = static_cast<double>(row.offset);
-    return slot;
-  }
-  std::vector<ContactPoint> sorted(double seconds);
+  /// By object, number of particles and particles.
+  static void sort(std::vector<ContactPoint>& contacts);
 
   bool wanted_ = false, each_wanted_ = false;
-  std::vector<RowSum> sums_;       ///< of each row
-  std::vector<Vec3d> squeezes_;    ///< of jaws, of each row; empty: none squeezes [N s]
-  std::vector<Slot> slots_;        ///< in the order of their first impulse
-  std::vector<Index> first_slot_;  ///< for each particle as the first of it
+  std::vector<RowSum> sums_;     ///< of each row
+  std::vector<Vec3d> squeezes_;  ///< of jaws, of each row; empty: none squeezes [N s]
+  ContactTally tally_;
   std::vector<std::pair<ContactPoint, Vec3d>> entries_;  ///< all impulses, if they are wanted
 };
 
@@ -209,22 +156,22 @@ std::vector<ContactPoint> ContactLog::contacts(const auto& rows, const auto& x, 
   before_rebuild(rows);
   for (const auto& row : rows) {
     if (!row.responds) continue;
-    Vec3d point = Vec3d::Zero();
-    for (std::size_t k = 0; k < row.count; ++k)
-      point +=
-          x[at_index(row.particle[k])].template cast<double>() * static_cast<double>(row.weight[k]);
-    const double gap =
-        row.normal.template cast<double>().dot(point) - static_cast<double>(row.offset);
-    if (gap <= static_cast<double>(row.thickness) * reach) slot_of(row);
+    ContactPoint c = contact_of(row);
+    const auto offset = static_cast<double>(row.offset);
+    place_contact(offset, x, c);
+    if (c.gap <= static_cast<double>(row.thickness) * reach) tally_.of(c, offset);
   }
-  for (Slot& slot : slots_) {
-    ContactPoint& c = slot.contact;
-    c.point.setZero();
-    for (std::size_t k = 0; k < static_cast<std::size_t>(c.count); ++k)
-      c.point += x[at_index(c.particle[k])].template cast<double>() * c.weight[k];
-    c.gap = c.normal.dot(c.point) - slot.offset;
+  std::vector<ContactPoint> contacts;
+  contacts.reserve(tally_.list().size());
+  for (const TalliedContact& one : tally_.list()) {
+    ContactPoint& c = contacts.emplace_back(one.contact);
+    place_contact(one.offset, x, c);
+    if (one.along.norm() > 0) c.normal = one.along.normalized();
+    c.normal_force = c.normal.dot(one.impulse) / seconds;
+    c.friction = one.impulse / seconds - c.normal * c.normal_force;
   }
-  return sorted(seconds);
+  sort(contacts);
+  return contacts;
 }
 
 }  // namespace weft
