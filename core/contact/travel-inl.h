@@ -10,6 +10,7 @@
 #include <hwy/highway.h>
 
 #include "core/contact/travel.h"
+#include "core/math/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
@@ -37,7 +38,7 @@ HWY_INLINE bool travel_of(D d, const TravelPass<Real>& p, std::size_t n) {
 }
 
 template <class Real>
-HWY_INLINE bool travel(const TravelPass<Real>& p) {
+HWY_ATTR bool travel(const TravelPass<Real>& p) {
   const hn::ScalableTag<Real> wide;
   const hn::CappedTag<Real, 1> single;
   bool within = true;
@@ -49,7 +50,7 @@ HWY_INLINE bool travel(const TravelPass<Real>& p) {
 
 /// The largest number, the same for any vector width.
 template <class Real>
-HWY_INLINE Real deviation(const PathPass<Real>& p) {
+HWY_ATTR Real deviation(const PathPass<Real>& p) {
   const hn::ScalableTag<Real> wide;
   const hn::CappedTag<Real, 1> single;
   const std::size_t count = 3 * p.particles;
@@ -68,19 +69,8 @@ HWY_INLINE Real deviation(const PathPass<Real>& p) {
   return last > whole ? last : whole;
 }
 
-HWY_ATTR float deviation_f32(const PathPass<float>& pass) {
-  return deviation(pass);
-}
-HWY_ATTR double deviation_f64(const PathPass<double>& pass) {
-  return deviation(pass);
-}
-
-HWY_ATTR bool travel_f32(const TravelPass<float>& pass) {
-  return travel(pass);
-}
-HWY_ATTR bool travel_f64(const TravelPass<double>& pass) {
-  return travel(pass);
-}
+WEFT_KERNEL(travel);
+WEFT_KERNEL(deviation);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

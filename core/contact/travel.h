@@ -27,8 +27,8 @@ struct TravelPass {
 /// @param executor  distributes many particles to its threads; may be null
 /// @return whether all are within what is left of their reach, now and after the drift; false if
 ///         any number is NaN
-bool measure_travel(const TravelPass<float>& pass, Executor* executor);
-bool measure_travel(const TravelPass<double>& pass, Executor* executor);
+template <class Real>
+bool run_travel(const TravelPass<Real>& pass, Executor* executor);
 
 /// Positions before a drift, and the straight paths for comparison; three numbers per particle.
 template <class Real>
@@ -44,7 +44,7 @@ struct PathPass {
 
 /// Largest component of any particle's displacement from its path after the drift [m]; ignores NaN.
 /// @param executor  distributes many particles to its threads; may be null
-float largest_deviation(const PathPass<float>& pass, Executor* executor);
-double largest_deviation(const PathPass<double>& pass, Executor* executor);
+template <class Real>
+Real largest_deviation(const PathPass<Real>& pass, Executor* executor);
 
 }  // namespace weft

@@ -40,7 +40,7 @@ HWY_INLINE Triple<V> air_third(D d, const AirLaw<D>& law, const Triple<V>& ab, c
 /// upper and f, e in its lower row. Even cells are split from a to e, odd ones from b to f
 /// (split_cells in grid_cells.h).
 template <class Real>
-HWY_INLINE void air_forces(const GridView<Real>& g, Real rho_half, Real skin_friction) {
+HWY_ATTR void air_forces(const GridView<Real>& g, Real rho_half, Real skin_friction) {
   using D = GridTag<Real>;
   const D d;
   using V = hn::Vec<D>;

@@ -37,7 +37,7 @@ struct ColumnSums {
 
 /// Energies of springs and bending, and the largest strain, at the grid's positions.
 template <class Real>
-HWY_INLINE ElasticEnergy elastic_energy(const GridView<Real>& g) {
+HWY_ATTR ElasticEnergy elastic_energy(const GridView<Real>& g) {
   using D = GridTag<Real>;
   const D d;
   const auto lanes = static_cast<std::ptrdiff_t>(hn::Lanes(d));

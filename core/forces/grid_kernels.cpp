@@ -12,66 +12,90 @@
 
 #if HWY_ONCE
 #include "core/forces/grid_pass.h"
+#include "core/instantiate.h"
 
 namespace weft {
 
-#define WEFT_DISPATCH(Real, Kind)                                                                 \
-  HWY_EXPORT(take_apart_##Kind);                                                                  \
-  HWY_EXPORT(put_together_##Kind);                                                                \
-  HWY_EXPORT(take_places_##Kind);                                                                 \
-  HWY_EXPORT(put_places_##Kind);                                                                  \
-  HWY_EXPORT(take_motion_##Kind);                                                                 \
-  HWY_EXPORT(internal_forces_##Kind);                                                             \
-  HWY_EXPORT(elastic_energy_##Kind);                                                              \
-  HWY_EXPORT(begin_rows_##Kind);                                                                  \
-  HWY_EXPORT(advance_##Kind);                                                                     \
-  HWY_EXPORT(drift_##Kind);                                                                       \
-  HWY_EXPORT(air_forces_##Kind);                                                                  \
-  HWY_EXPORT(box_paths_##Kind);                                                                   \
-  void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to,                    \
-                       std::ptrdiff_t pitch) {                                                    \
-    HWY_DYNAMIC_DISPATCH(take_apart_##Kind)(grid, from, to, pitch);                               \
-  }                                                                                               \
-  void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,      \
-                         Real* to) {                                                              \
-    HWY_DYNAMIC_DISPATCH(put_together_##Kind)(grid, from, pitch, to);                             \
-  }                                                                                               \
-  void grid_internal_forces(const GridView<Real>& grid) {                                         \
-    HWY_DYNAMIC_DISPATCH(internal_forces_##Kind)(grid);                                           \
-  }                                                                                               \
-  ElasticEnergy grid_elastic_energy(const GridView<Real>& grid) {                                 \
-    return HWY_DYNAMIC_DISPATCH(elastic_energy_##Kind)(grid);                                     \
-  }                                                                                               \
-  void grid_begin_rows(const GridView<Real>& grid, std::ptrdiff_t first) {                        \
-    HWY_DYNAMIC_DISPATCH(begin_rows_##Kind)(grid, first);                                         \
-  }                                                                                               \
-  void grid_advance(const GridView<Real>& grid, const GridStep<Real>& step, std::ptrdiff_t first, \
-                    std::ptrdiff_t last) {                                                        \
-    HWY_DYNAMIC_DISPATCH(advance_##Kind)(grid, step, first, last);                                \
-  }                                                                                               \
-  void grid_take_places(const GridView<Real>& grid, const Real* from, Real* to,                   \
-                        std::ptrdiff_t pitch) {                                                   \
-    HWY_DYNAMIC_DISPATCH(take_places_##Kind)(grid, from, to, pitch);                              \
-  }                                                                                               \
-  void grid_put_places(const GridView<Real>& grid, Real* to) {                                    \
-    HWY_DYNAMIC_DISPATCH(put_places_##Kind)(grid, to);                                            \
-  }                                                                                               \
-  void grid_take_motion(const GridView<Real>& grid, const Real* x, const Real* v) {               \
-    HWY_DYNAMIC_DISPATCH(take_motion_##Kind)(grid, x, v);                                         \
-  }                                                                                               \
-  void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v,          \
-                  Real* x) {                                                                      \
-    HWY_DYNAMIC_DISPATCH(drift_##Kind)(grid, dt, has_external, v, x);                             \
-  }                                                                                               \
-  void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {                    \
-    HWY_DYNAMIC_DISPATCH(air_forces_##Kind)(grid, pressure, skin);                                \
-  }                                                                                               \
-  void grid_box_paths(const GridView<Real>& grid, const Real* paths, Real time, Real* box) {      \
-    HWY_DYNAMIC_DISPATCH(box_paths_##Kind)(grid, paths, time, box);                               \
-  }
-WEFT_DISPATCH(float, f32)
-WEFT_DISPATCH(double, f64)
-#undef WEFT_DISPATCH
+WEFT_EXPORT_KERNEL(take_apart);
+WEFT_EXPORT_KERNEL(put_together);
+WEFT_EXPORT_KERNEL(internal_forces);
+WEFT_EXPORT_KERNEL(elastic_energy);
+WEFT_EXPORT_KERNEL(begin_rows);
+WEFT_EXPORT_KERNEL(advance);
+WEFT_EXPORT_KERNEL(take_places);
+WEFT_EXPORT_KERNEL(put_places);
+WEFT_EXPORT_KERNEL(take_motion);
+WEFT_EXPORT_KERNEL(drift);
+WEFT_EXPORT_KERNEL(air_forces);
+WEFT_EXPORT_KERNEL(box_paths);
+
+template <class Real>
+void grid_take_apart(const GridView<Real>& grid, const Real* from, Real* to, std::ptrdiff_t pitch) {
+  WEFT_RUN(take_apart, Real)(grid, from, to, pitch);
+}
+
+template <class Real>
+void grid_put_together(const GridView<Real>& grid, const Real* from, std::ptrdiff_t pitch,
+                       Real* to) {
+  WEFT_RUN(put_together, Real)(grid, from, pitch, to);
+}
+
+template <class Real>
+void grid_internal_forces(const GridView<Real>& grid) {
+  WEFT_RUN(internal_forces, Real)(grid);
+}
+
+template <class Real>
+ElasticEnergy grid_elastic_energy(const GridView<Real>& grid) {
+  return WEFT_RUN(elastic_energy, Real)(grid);
+}
+
+template <class Real>
+void grid_begin_rows(const GridView<Real>& grid, std::ptrdiff_t first) {
+  WEFT_RUN(begin_rows, Real)(grid, first);
+}
+
+template <class Real>
+void grid_advance(const GridView<Real>& grid, const GridStep<Real>& step, std::ptrdiff_t first,
+                  std::ptrdiff_t last) {
+  WEFT_RUN(advance, Real)(grid, step, first, last);
+}
+
+template <class Real>
+void grid_take_places(const GridView<Real>& grid, const Real* from, Real* to,
+                      std::ptrdiff_t pitch) {
+  WEFT_RUN(take_places, Real)(grid, from, to, pitch);
+}
+
+template <class Real>
+void grid_put_places(const GridView<Real>& grid, Real* to) {
+  WEFT_RUN(put_places, Real)(grid, to);
+}
+
+template <class Real>
+void grid_take_motion(const GridView<Real>& grid, const Real* x, const Real* v) {
+  WEFT_RUN(take_motion, Real)(grid, x, v);
+}
+
+template <class Real>
+void grid_drift(const GridView<Real>& grid, Real dt, bool has_external, const Real* v, Real* x) {
+  WEFT_RUN(drift, Real)(grid, dt, has_external, v, x);
+}
+
+template <class Real>
+void grid_air_forces(const GridView<Real>& grid, Real pressure, Real skin) {
+  WEFT_RUN(air_forces, Real)(grid, pressure, skin);
+}
+
+template <class Real>
+void grid_box_paths(const GridView<Real>& grid, const Real* paths, Real time, Real* box) {
+  WEFT_RUN(box_paths, Real)(grid, paths, time, box);
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(grid_take_apart, grid_put_together, grid_internal_forces,
+                           grid_elastic_energy, grid_begin_rows, grid_advance, grid_take_places,
+                           grid_put_places, grid_take_motion, grid_drift, grid_air_forces,
+                           grid_box_paths)
 
 const char* simd_level() {
   return hwy::TargetName(hwy::SupportedTargets() & -hwy::SupportedTargets());

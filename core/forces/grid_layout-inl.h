@@ -55,16 +55,16 @@ HWY_INLINE void for_each_stretch(const GridView<Real>& g, Body&& body) {
 /// Splits arrays of three numbers per particle into three lines for every row.
 /// @param pitch  from row to row
 template <class Real>
-HWY_INLINE void take_apart(const GridView<Real>& g, const Real* from, Real* to,
-                           std::ptrdiff_t pitch) {
+HWY_ATTR void take_apart(const GridView<Real>& g, const Real* from, Real* to,
+                         std::ptrdiff_t pitch) {
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number)
              HWY_ATTR { store(d, load_particles(d, from + number), to + r * pitch + c, g.line); });
 }
 
 template <class Real>
-HWY_INLINE void put_together(const GridView<Real>& g, const Real* from, std::ptrdiff_t pitch,
-                             Real* to) {
+HWY_ATTR void put_together(const GridView<Real>& g, const Real* from, std::ptrdiff_t pitch,
+                           Real* to) {
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number)
              HWY_ATTR { store_particles(d, load(d, from + r * pitch + c, g.line), to + number); });
@@ -78,8 +78,8 @@ HWY_INLINE Triple<hn::Vec<D>> origin_of(D d, const GridView<Real>& g) {
 
 /// Splits places of the model, as seen from the origin.
 template <class Real>
-HWY_INLINE void take_places(const GridView<Real>& g, const Real* from, Real* to,
-                            std::ptrdiff_t pitch) {
+HWY_ATTR void take_places(const GridView<Real>& g, const Real* from, Real* to,
+                          std::ptrdiff_t pitch) {
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
         store(d, load_particles(d, from + number) - origin_of(d, g), to + r * pitch + c, g.line);
@@ -88,7 +88,7 @@ HWY_INLINE void take_places(const GridView<Real>& g, const Real* from, Real* to,
 
 /// Places for the model, rounded.
 template <class Real>
-HWY_INLINE void put_places(const GridView<Real>& g, Real* to) {
+HWY_ATTR void put_places(const GridView<Real>& g, Real* to) {
   for_each_stretch(
       g, [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number) HWY_ATTR {
         const auto place = load(d, g.motion + r * g.pitch() + c, g.line) + origin_of(d, g);

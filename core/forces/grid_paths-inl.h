@@ -39,7 +39,7 @@ HWY_INLINE void widen(D d, const Real* x, const Real* base, const Real* velocity
 /// @param paths  six lines per row: positions at time 0 [m], velocities along the paths [m/s]
 /// @param box    receives the lower and the upper corner [m]
 template <class Real>
-HWY_INLINE void box_paths(const GridView<Real>& g, const Real* paths, Real time, Real* box) {
+HWY_ATTR void box_paths(const GridView<Real>& g, const Real* paths, Real time, Real* box) {
   const GridTag<Real> wide;
   const hn::CappedTag<Real, 1> single;
   constexpr Real kFar = std::numeric_limits<Real>::infinity();

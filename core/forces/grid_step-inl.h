@@ -165,7 +165,7 @@ HWY_INLINE void clear_lines(const GridView<Real>& g) {
 
 /// Only computes the forces, into the arrays of external forces.
 template <class Real>
-HWY_INLINE void internal_forces(const GridView<Real>& g) {
+HWY_ATTR void internal_forces(const GridView<Real>& g) {
   clear_lines(g);
   for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
     const ForceLines<Real> lines(g, r);
@@ -219,7 +219,7 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
 /// Clears the lines of scratch, and fills them with the forces that the rows above carry to row
 /// `first`: springs reach one row down, bending two.
 template <class Real>
-HWY_INLINE void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
+HWY_ATTR void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
   clear_lines(g);
   for (std::ptrdiff_t r = std::max<std::ptrdiff_t>(0, first - 2); r < first; ++r) {
     const ForceLines<Real> lines(g, r);
@@ -231,8 +231,8 @@ HWY_INLINE void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
 /// The whole substep of rows `first` to `last` (exclusive), after `begin_rows` or the rows above.
 /// Accumulates the powers of the external forces at the new velocities in their line.
 template <class Real>
-HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std::ptrdiff_t first,
-                        std::ptrdiff_t last) {
+HWY_ATTR void advance(const GridView<Real>& g, const GridStep<Real>& step, std::ptrdiff_t first,
+                      std::ptrdiff_t last) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
   for (std::ptrdiff_t r = first; r < last; ++r) {
     const ForceLines<Real> lines(g, r);
@@ -250,7 +250,7 @@ HWY_INLINE void advance(const GridView<Real>& g, const GridStep<Real>& step, std
 /// Takes over what moved in the model and its velocities, drifts, and stores the places into the
 /// model. Accumulates the powers of the external forces in their line.
 template <class Real>
-HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool has_external, const Real* v, Real* x) {
+HWY_ATTR void drift(const GridView<Real>& g, Real dt, bool has_external, const Real* v, Real* x) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
   visit_places(g, x,
                [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number, auto& place,
@@ -272,7 +272,7 @@ HWY_INLINE void drift(const GridView<Real>& g, Real dt, bool has_external, const
 
 /// Takes over what moved in the model, and its velocities.
 template <class Real>
-HWY_INLINE void take_motion(const GridView<Real>& g, const Real* x, const Real* v) {
+HWY_ATTR void take_motion(const GridView<Real>& g, const Real* x, const Real* v) {
   visit_places(g, x,
                [&](auto d, std::ptrdiff_t r, std::ptrdiff_t c, std::ptrdiff_t number, auto&, auto&)
                    HWY_ATTR {

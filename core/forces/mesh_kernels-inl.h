@@ -15,6 +15,7 @@
 #include "core/forces/mesh_lanes-inl.h"
 #include "core/forces/mesh_view.h"
 #include "core/forces/spring_law-inl.h"
+#include "core/math/kernels.h"
 
 HWY_BEFORE_NAMESPACE();
 namespace weft {
@@ -273,7 +274,7 @@ HWY_INLINE void for_each_block(const MeshView<Real>& mesh, const Real* x, const 
 }
 
 template <class Real>
-HWY_INLINE void all_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* to) {
+HWY_ATTR void all_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* to) {
   for_each_block<false>(mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) {
     for (std::size_t i = 0; i < count; ++i)
       std::memcpy(to + 3 * (first + i), force + 4 * i, 3 * sizeof(Real));
@@ -295,30 +296,16 @@ HWY_INLINE void kick_blocks(const MeshView<Real>& mesh, const KickLaw<Real>& law
 }
 
 template <class Real>
-HWY_INLINE void kick_all(const MeshView<Real>& mesh, const KickLaw<Real>& law,
-                         const KickedParticles<Real>& particles, const Real* x, Real* v) {
+HWY_ATTR void kick_all(const MeshView<Real>& mesh, const KickLaw<Real>& law,
+                       const KickedParticles<Real>& particles, const Real* x, Real* v) {
   if (mesh.pairs != nullptr && mesh.substeps_per_second > 0)
     kick_blocks<true>(mesh, law, particles, x, v);
   else
     kick_blocks<false>(mesh, law, particles, x, v);
 }
 
-HWY_ATTR void mesh_forces_f32(const MeshView<float>& mesh, const float* x, const float* v,
-                              float* force) {
-  all_forces(mesh, x, v, force);
-}
-HWY_ATTR void mesh_forces_f64(const MeshView<double>& mesh, const double* x, const double* v,
-                              double* force) {
-  all_forces(mesh, x, v, force);
-}
-HWY_ATTR void mesh_kick_f32(const MeshView<float>& mesh, const KickLaw<float>& law,
-                            const KickedParticles<float>& particles, const float* x, float* v) {
-  kick_all(mesh, law, particles, x, v);
-}
-HWY_ATTR void mesh_kick_f64(const MeshView<double>& mesh, const KickLaw<double>& law,
-                            const KickedParticles<double>& particles, const double* x, double* v) {
-  kick_all(mesh, law, particles, x, v);
-}
+WEFT_KERNEL(all_forces);
+WEFT_KERNEL(kick_all);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -14,28 +14,25 @@
 #include "core/forces/mesh_kernels-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(mesh_forces_f32);
-HWY_EXPORT(mesh_forces_f64);
-HWY_EXPORT(mesh_kick_f32);
-HWY_EXPORT(mesh_kick_f64);
+WEFT_EXPORT_KERNEL(all_forces);
+WEFT_EXPORT_KERNEL(kick_all);
 
-void mesh_forces(const MeshView<float>& mesh, const float* x, const float* v, float* force) {
-  HWY_DYNAMIC_DISPATCH(mesh_forces_f32)(mesh, x, v, force);
-}
-void mesh_forces(const MeshView<double>& mesh, const double* x, const double* v, double* force) {
-  HWY_DYNAMIC_DISPATCH(mesh_forces_f64)(mesh, x, v, force);
+template <class Real>
+void mesh_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* force) {
+  WEFT_RUN(all_forces, Real)(mesh, x, v, force);
 }
 
-void mesh_kick(const MeshView<float>& mesh, const KickLaw<float>& law,
-               const KickedParticles<float>& particles, const float* x, float* v) {
-  HWY_DYNAMIC_DISPATCH(mesh_kick_f32)(mesh, law, particles, x, v);
+template <class Real>
+void mesh_kick(const MeshView<Real>& mesh, const KickLaw<Real>& law,
+               const KickedParticles<Real>& particles, const Real* x, Real* v) {
+  WEFT_RUN(kick_all, Real)(mesh, law, particles, x, v);
 }
-void mesh_kick(const MeshView<double>& mesh, const KickLaw<double>& law,
-               const KickedParticles<double>& particles, const double* x, double* v) {
-  HWY_DYNAMIC_DISPATCH(mesh_kick_f64)(mesh, law, particles, x, v);
-}
+
+WEFT_INSTANTIATE_FUNCTIONS(mesh_forces, mesh_kick)
 
 }  // namespace weft
 #endif

@@ -11,14 +11,13 @@ namespace weft {
 
 /// Overwrites the mesh's range of `force` [N].
 /// @param x,v  [m], [m/s]
-void mesh_forces(const MeshView<float>& mesh, const float* x, const float* v, float* force);
-void mesh_forces(const MeshView<double>& mesh, const double* x, const double* v, double* force);
+template <class Real>
+void mesh_forces(const MeshView<Real>& mesh, const Real* x, const Real* v, Real* force);
 
 /// Kicks the mesh's range of `v` by the forces. No particle is read after its kick, so no list of
 /// forces is needed.
-void mesh_kick(const MeshView<float>& mesh, const KickLaw<float>& law,
-               const KickedParticles<float>& particles, const float* x, float* v);
-void mesh_kick(const MeshView<double>& mesh, const KickLaw<double>& law,
-               const KickedParticles<double>& particles, const double* x, double* v);
+template <class Real>
+void mesh_kick(const MeshView<Real>& mesh, const KickLaw<Real>& law,
+               const KickedParticles<Real>& particles, const Real* x, Real* v);
 
 }  // namespace weft

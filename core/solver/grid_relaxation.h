@@ -51,18 +51,18 @@ struct Prediction {
   bool forced = false;  ///< add `force`
 };
 
-void predict_grid(const SweepView<float>& grid, const Prediction<float>& step);
-void predict_grid(const SweepView<double>& grid, const Prediction<double>& step);
+template <class Real>
+void predict_grid(const SweepView<Real>& grid, const Prediction<Real>& step);
 
 /// One sweep over all springs, row by row, either down or up.
 /// @param first  all multipliers are 0 before it
 /// @param last   the multipliers are not read after it
-void sweep_grid(const SweepView<float>& grid, bool down, bool first, bool last);
-void sweep_grid(const SweepView<double>& grid, bool down, bool first, bool last);
+template <class Real>
+void sweep_grid(const SweepView<Real>& grid, bool down, bool first, bool last);
 
 /// x <- x + displacement.
-void move_grid(const SweepView<float>& grid);
-void move_grid(const SweepView<double>& grid);
+template <class Real>
+void move_grid(const SweepView<Real>& grid);
 
 /// Compliant relaxation (XPBD) of one grid part with regular springs: the sweeps of relaxation.h,
 /// coloured within each row, in vector code selected for the processor at run time. Only + - * /

@@ -12,6 +12,7 @@
 #include <hwy/highway.h>
 
 #include "core/forces/spring.h"
+#include "core/math/kernels.h"
 #include "core/math/triple-inl.h"
 #include "core/solver/grid_relaxation.h"
 
@@ -120,7 +121,7 @@ HWY_INLINE void sweep_rows(Use use, const SweepView<Real>& g, bool down) {
 }
 
 template <class Real>
-HWY_INLINE void sweep(const SweepView<Real>& g, bool down, bool first, bool last) {
+HWY_ATTR void sweep(const SweepView<Real>& g, bool down, bool first, bool last) {
   if (first && last)
     sweep_rows(Multipliers<false, false>(), g, down);
   else if (first)
@@ -218,7 +219,7 @@ HWY_INLINE void predict_line(D d, const SweepView<Real>& g, const Prediction<Rea
 }
 
 template <class Real>
-HWY_INLINE void predict(const SweepView<Real>& g, const Prediction<Real>& step) {
+HWY_ATTR void predict(const SweepView<Real>& g, const Prediction<Real>& step) {
   const hn::CappedTag<Real, kSweepMargin> d;
   for (int r = 0; r < g.rows; ++r) {
     const std::ptrdiff_t even = r * g.stride, odd = even + g.half;
@@ -230,31 +231,16 @@ HWY_INLINE void predict(const SweepView<Real>& g, const Prediction<Real>& step) 
 }
 
 template <class Real>
-HWY_INLINE void move(const SweepView<Real>& g) {
+HWY_ATTR void move(const SweepView<Real>& g) {
   const hn::CappedTag<Real, kSweepMargin> d;
   const std::ptrdiff_t count = g.rows * g.stride;
   for (std::ptrdiff_t n = 0; n < count; n += static_cast<std::ptrdiff_t>(hn::Lanes(d)))
     store_at(d, g.x, n, load_at(d, g.x, n) + load_at(d, g.displacement, n));
 }
 
-HWY_ATTR void predict_f32(const SweepView<float>& g, const Prediction<float>& step) {
-  predict(g, step);
-}
-HWY_ATTR void predict_f64(const SweepView<double>& g, const Prediction<double>& step) {
-  predict(g, step);
-}
-HWY_ATTR void sweep_f32(const SweepView<float>& g, bool down, bool first, bool last) {
-  sweep(g, down, first, last);
-}
-HWY_ATTR void sweep_f64(const SweepView<double>& g, bool down, bool first, bool last) {
-  sweep(g, down, first, last);
-}
-HWY_ATTR void move_f32(const SweepView<float>& g) {
-  move(g);
-}
-HWY_ATTR void move_f64(const SweepView<double>& g) {
-  move(g);
-}
+WEFT_KERNEL(predict);
+WEFT_KERNEL(sweep);
+WEFT_KERNEL(move);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -11,38 +11,30 @@
 #include "core/solver/grid_relaxation_kernels-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(predict_f32);
-HWY_EXPORT(predict_f64);
-HWY_EXPORT(sweep_f32);
-HWY_EXPORT(sweep_f64);
-HWY_EXPORT(move_f32);
-HWY_EXPORT(move_f64);
+WEFT_EXPORT_KERNEL(predict);
+WEFT_EXPORT_KERNEL(sweep);
+WEFT_EXPORT_KERNEL(move);
 
-void predict_grid(const SweepView<float>& grid, const Prediction<float>& step) {
-  HWY_DYNAMIC_DISPATCH(predict_f32)(grid, step);
+template <class Real>
+void predict_grid(const SweepView<Real>& grid, const Prediction<Real>& step) {
+  WEFT_RUN(predict, Real)(grid, step);
 }
 
-void predict_grid(const SweepView<double>& grid, const Prediction<double>& step) {
-  HWY_DYNAMIC_DISPATCH(predict_f64)(grid, step);
+template <class Real>
+void sweep_grid(const SweepView<Real>& grid, bool down, bool first, bool last) {
+  WEFT_RUN(sweep, Real)(grid, down, first, last);
 }
 
-void sweep_grid(const SweepView<float>& grid, bool down, bool first, bool last) {
-  HWY_DYNAMIC_DISPATCH(sweep_f32)(grid, down, first, last);
+template <class Real>
+void move_grid(const SweepView<Real>& grid) {
+  WEFT_RUN(move, Real)(grid);
 }
 
-void sweep_grid(const SweepView<double>& grid, bool down, bool first, bool last) {
-  HWY_DYNAMIC_DISPATCH(sweep_f64)(grid, down, first, last);
-}
-
-void move_grid(const SweepView<float>& grid) {
-  HWY_DYNAMIC_DISPATCH(move_f32)(grid);
-}
-
-void move_grid(const SweepView<double>& grid) {
-  HWY_DYNAMIC_DISPATCH(move_f64)(grid);
-}
+WEFT_INSTANTIATE_FUNCTIONS(predict_grid, sweep_grid, move_grid)
 
 }  // namespace weft
 #endif

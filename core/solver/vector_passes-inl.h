@@ -13,6 +13,7 @@
 
 #include "core/forces/kick-inl.h"
 #include "core/math/drift-inl.h"
+#include "core/math/kernels.h"
 #include "core/solver/vector_passes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -31,14 +32,14 @@ HWY_INLINE void for_each_number(std::size_t count, Body&& body) {
 }
 
 template <class Real>
-HWY_INLINE void kick(const KickPass<Real>& p) {
+HWY_ATTR void kick(const KickPass<Real>& p) {
   for_each_particle<Real>(p.count, [&](auto d, std::size_t i) HWY_ATTR {
     kick_particles(d, p.law, p.particles, i, load_particles(d, p.internal + 3 * i), p.from, p.to);
   });
 }
 
 template <class Real>
-HWY_INLINE void drift(std::size_t count, const Real* v, Real dt, Real* x, Real* remainder) {
+HWY_ATTR void drift(std::size_t count, const Real* v, Real dt, Real* x, Real* remainder) {
   for_each_number<Real>(count, [&](auto d, std::size_t n) HWY_ATTR {
     auto lost = hn::LoadU(d, remainder + n);
     hn::StoreU(drifted(d, hn::LoadU(d, x + n), hn::LoadU(d, v + n), hn::Set(d, dt), lost), d,
@@ -47,19 +48,8 @@ HWY_INLINE void drift(std::size_t count, const Real* v, Real dt, Real* x, Real* 
   });
 }
 
-HWY_ATTR void kick_f32(const KickPass<float>& pass) {
-  kick(pass);
-}
-HWY_ATTR void kick_f64(const KickPass<double>& pass) {
-  kick(pass);
-}
-HWY_ATTR void drift_f32(std::size_t count, const float* v, float dt, float* x, float* remainder) {
-  drift(count, v, dt, x, remainder);
-}
-HWY_ATTR void drift_f64(std::size_t count, const double* v, double dt, double* x,
-                        double* remainder) {
-  drift(count, v, dt, x, remainder);
-}
+WEFT_KERNEL(kick);
+WEFT_KERNEL(drift);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -11,28 +11,24 @@
 #include "core/solver/vector_passes-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(kick_f32);
-HWY_EXPORT(kick_f64);
-HWY_EXPORT(drift_f32);
-HWY_EXPORT(drift_f64);
+WEFT_EXPORT_KERNEL(kick);
+WEFT_EXPORT_KERNEL(drift);
 
-void run_kick(const KickPass<float>& pass) {
-  HWY_DYNAMIC_DISPATCH(kick_f32)(pass);
+template <class Real>
+void run_kick(const KickPass<Real>& pass) {
+  WEFT_RUN(kick, Real)(pass);
 }
 
-void run_kick(const KickPass<double>& pass) {
-  HWY_DYNAMIC_DISPATCH(kick_f64)(pass);
+template <class Real>
+void run_drift(std::size_t count, const Real* v, Real dt, Real* x, Real* remainder) {
+  WEFT_RUN(drift, Real)(count, v, dt, x, remainder);
 }
 
-void run_drift(std::size_t count, const float* v, float dt, float* x, float* remainder) {
-  HWY_DYNAMIC_DISPATCH(drift_f32)(count, v, dt, x, remainder);
-}
-
-void run_drift(std::size_t count, const double* v, double dt, double* x, double* remainder) {
-  HWY_DYNAMIC_DISPATCH(drift_f64)(count, v, dt, x, remainder);
-}
+WEFT_INSTANTIATE_FUNCTIONS(run_kick, run_drift)
 
 }  // namespace weft
 #endif

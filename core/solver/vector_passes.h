@@ -21,12 +21,12 @@ struct KickPass {
   KickLaw<Real> law;
 };
 
-void run_kick(const KickPass<float>& pass);
-void run_kick(const KickPass<double>& pass);
+template <class Real>
+void run_kick(const KickPass<Real>& pass);
 
 /// x <- x + v dt.
 /// @param remainder  what earlier drifts lost to rounding, and what they now have lost [m]
-void run_drift(std::size_t count, const float* v, float dt, float* x, float* remainder);
-void run_drift(std::size_t count, const double* v, double dt, double* x, double* remainder);
+template <class Real>
+void run_drift(std::size_t count, const Real* v, Real dt, Real* x, Real* remainder);
 
 }  // namespace weft

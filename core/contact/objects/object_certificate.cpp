@@ -83,7 +83,7 @@ bool measure_travel(const ClothState<Real>& state, Real dt, Real less, Executor*
                               reach.reach.data(),
                               less,
                               reach.travel2.data()};
-  return measure_travel(pass, executor);
+  return run_travel(pass, executor);
 }
 
 template <class Real>

@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include "core/math/kernels.h"
 #include "core/math/lanes-inl.h"
 #include "core/solver/implicit/grid_planes-inl.h"
 #include "core/solver/implicit/grid_transfer.h"
@@ -81,8 +82,8 @@ HWY_INLINE void gather_about(Real* line, int columns, int coarse_columns, Real* 
 }
 
 template <class Real>
-HWY_INLINE void restrict_rows(const GridLayout& fine, const GridLayout& coarse, const Real* from,
-                              Real* to, TransferLines<Real>& lines) {
+HWY_ATTR void restrict_rows(const GridLayout& fine, const GridLayout& coarse, const Real* from,
+                            Real* to, TransferLines<Real>& lines) {
   const auto at = [from](auto d, std::ptrdiff_t k) HWY_ATTR { return hn::LoadU(d, from + k); };
   for (int r = 0; r < coarse.rows; ++r)
     gather_about(add_up_about(at, fine, r, lines.fine), fine.columns, coarse.columns,
@@ -103,8 +104,8 @@ HWY_INLINE void interpolate(const Real* line, int columns, int coarse_columns, R
 }
 
 template <class Real>
-HWY_INLINE void prolong_rows(const GridLayout& fine, const GridLayout& coarse, const Real* free,
-                             const Real* from, Real* to, TransferLines<Real>& lines) {
+HWY_ATTR void prolong_rows(const GridLayout& fine, const GridLayout& coarse, const Real* free,
+                           const Real* from, Real* to, TransferLines<Real>& lines) {
   const hn::ScalableTag<Real> d;
   Real* const wide = lines.fine.data() + kGridMargin;
   for (int r = 0; r < fine.rows; ++r) {
@@ -177,8 +178,8 @@ HWY_INLINE void coarsen_row(const SpringGrid<Real>& fine, int r, std::size_t e,
 }
 
 template <class Real>
-HWY_INLINE void coarsen_grid(const SpringGrid<Real>& fine, SpringGrid<Real>& coarse,
-                             TransferLines<Real>& lines) {
+HWY_ATTR void coarsen_grid(const SpringGrid<Real>& fine, SpringGrid<Real>& coarse,
+                           TransferLines<Real>& lines) {
   for (int r = 0; r < coarse.layout.rows; ++r) {
     for (std::size_t e = 0; e < 6; ++e) {
       fine.factored ? coarsen_row<FactoredBlocks>(fine, r, e, coarse, lines.fine)
@@ -187,30 +188,9 @@ HWY_INLINE void coarsen_grid(const SpringGrid<Real>& fine, SpringGrid<Real>& coa
   }
 }
 
-HWY_ATTR void restrict_f32(const GridLayout& fine, const GridLayout& coarse, const float* from,
-                           float* to, TransferLines<float>& lines) {
-  restrict_rows(fine, coarse, from, to, lines);
-}
-HWY_ATTR void prolong_f32(const GridLayout& fine, const GridLayout& coarse, const float* free,
-                          const float* from, float* to, TransferLines<float>& lines) {
-  prolong_rows(fine, coarse, free, from, to, lines);
-}
-HWY_ATTR void coarsen_f32(const SpringGrid<float>& fine, SpringGrid<float>& coarse,
-                          TransferLines<float>& lines) {
-  coarsen_grid(fine, coarse, lines);
-}
-HWY_ATTR void restrict_f64(const GridLayout& fine, const GridLayout& coarse, const double* from,
-                           double* to, TransferLines<double>& lines) {
-  restrict_rows(fine, coarse, from, to, lines);
-}
-HWY_ATTR void prolong_f64(const GridLayout& fine, const GridLayout& coarse, const double* free,
-                          const double* from, double* to, TransferLines<double>& lines) {
-  prolong_rows(fine, coarse, free, from, to, lines);
-}
-HWY_ATTR void coarsen_f64(const SpringGrid<double>& fine, SpringGrid<double>& coarse,
-                          TransferLines<double>& lines) {
-  coarsen_grid(fine, coarse, lines);
-}
+WEFT_KERNEL(restrict_rows);
+WEFT_KERNEL(prolong_rows);
+WEFT_KERNEL(coarsen_grid);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

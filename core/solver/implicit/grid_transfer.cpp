@@ -11,39 +11,30 @@
 #include "core/solver/implicit/grid_transfer-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(restrict_f32);
-HWY_EXPORT(restrict_f64);
-HWY_EXPORT(prolong_f32);
-HWY_EXPORT(prolong_f64);
-HWY_EXPORT(coarsen_f32);
-HWY_EXPORT(coarsen_f64);
+WEFT_EXPORT_KERNEL(restrict_rows);
+WEFT_EXPORT_KERNEL(prolong_rows);
+WEFT_EXPORT_KERNEL(coarsen_grid);
 
-void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const float* from, float* to,
-                    TransferLines<float>& lines) {
-  HWY_DYNAMIC_DISPATCH(restrict_f32)(fine, coarse, from, to, lines);
-}
-void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const float* free,
-                   const float* from, float* to, TransferLines<float>& lines) {
-  HWY_DYNAMIC_DISPATCH(prolong_f32)(fine, coarse, free, from, to, lines);
-}
-void coarsen_springs(const SpringGrid<float>& fine, SpringGrid<float>& coarse,
-                     TransferLines<float>& lines) {
-  HWY_DYNAMIC_DISPATCH(coarsen_f32)(fine, coarse, lines);
+template <class Real>
+void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const Real* from, Real* to,
+                    TransferLines<Real>& lines) {
+  WEFT_RUN(restrict_rows, Real)(fine, coarse, from, to, lines);
 }
 
-void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const double* from,
-                    double* to, TransferLines<double>& lines) {
-  HWY_DYNAMIC_DISPATCH(restrict_f64)(fine, coarse, from, to, lines);
+template <class Real>
+void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const Real* free,
+                   const Real* from, Real* to, TransferLines<Real>& lines) {
+  WEFT_RUN(prolong_rows, Real)(fine, coarse, free, from, to, lines);
 }
-void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const double* free,
-                   const double* from, double* to, TransferLines<double>& lines) {
-  HWY_DYNAMIC_DISPATCH(prolong_f64)(fine, coarse, free, from, to, lines);
-}
-void coarsen_springs(const SpringGrid<double>& fine, SpringGrid<double>& coarse,
-                     TransferLines<double>& lines) {
-  HWY_DYNAMIC_DISPATCH(coarsen_f64)(fine, coarse, lines);
+
+template <class Real>
+void coarsen_springs(const SpringGrid<Real>& fine, SpringGrid<Real>& coarse,
+                     TransferLines<Real>& lines) {
+  WEFT_RUN(coarsen_grid, Real)(fine, coarse, lines);
 }
 
 template <class Real>
@@ -53,6 +44,7 @@ void TransferLines<Real>::prepare(const GridLayout& finest) {
     line->assign(static_cast<std::size_t>(finest.stride + 5 * kGridMargin), Real(0));
 }
 
+WEFT_INSTANTIATE_FUNCTIONS(restrict_plane, add_prolonged, coarsen_springs)
 template struct TransferLines<float>;
 template struct TransferLines<double>;
 

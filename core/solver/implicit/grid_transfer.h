@@ -30,24 +30,21 @@ struct TransferLines {
 
 /// `to` = sum over the fine particles around each coarse one of bilinear weight times `from`. One
 /// plane of numbers, with zeros around the grid.
-void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const float* from, float* to,
-                    TransferLines<float>& lines);
-void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const double* from,
-                    double* to, TransferLines<double>& lines);
+template <class Real>
+void restrict_plane(const GridLayout& fine, const GridLayout& coarse, const Real* from, Real* to,
+                    TransferLines<Real>& lines);
 
 /// `to` += bilinear interpolation of `from`, for free particles. One plane of numbers.
 /// @param free  of the fine level
-void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const float* free,
-                   const float* from, float* to, TransferLines<float>& lines);
-void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const double* free,
-                   const double* from, double* to, TransferLines<double>& lines);
+template <class Real>
+void add_prolonged(const GridLayout& fine, const GridLayout& coarse, const Real* free,
+                   const Real* from, Real* to, TransferLines<Real>& lines);
 
 /// Each coarse spring is the sum of the parallel fine ones around it, by their bilinear weight
 /// across it and the squared fraction of its length that they cover: springs compressed in wrinkles
 /// do not soften the coarse cloth, as springs rebuilt from every second position would.
-void coarsen_springs(const SpringGrid<float>& fine, SpringGrid<float>& coarse,
-                     TransferLines<float>& lines);
-void coarsen_springs(const SpringGrid<double>& fine, SpringGrid<double>& coarse,
-                     TransferLines<double>& lines);
+template <class Real>
+void coarsen_springs(const SpringGrid<Real>& fine, SpringGrid<Real>& coarse,
+                     TransferLines<Real>& lines);
 
 }  // namespace weft

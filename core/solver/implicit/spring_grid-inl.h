@@ -11,6 +11,7 @@
 
 #include <hwy/highway.h>
 
+#include "core/math/kernels.h"
 #include "core/solver/implicit/grid_planes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -52,8 +53,8 @@ HWY_INLINE void multiply_grid(const SpringGrid<Real>& g, const Real* vector, Rea
 
 /// @param y  product of z, or null for z = 0
 template <class Real>
-HWY_INLINE void smooth_grid(const SpringGrid<Real>& g, Real omega, const Real* residual,
-                            const Real* y, Real* z) {
+HWY_ATTR void smooth_grid(const SpringGrid<Real>& g, Real omega, const Real* residual,
+                          const Real* y, Real* z) {
   const hn::ScalableTag<Real> d;
   using V = hn::Vec<decltype(d)>;
   const GridLayout& layout = g.layout;
@@ -73,7 +74,7 @@ HWY_INLINE void smooth_grid(const SpringGrid<Real>& g, Real omega, const Real* r
 
 /// Sums kGridMargin interleaved partial sums, which are added to doubles from time to time.
 template <class Real>
-HWY_INLINE double dot_product(const Real* a, const Real* b, std::size_t count) {
+HWY_ATTR double dot_product(const Real* a, const Real* b, std::size_t count) {
   const hn::CappedTag<Real, static_cast<std::size_t>(kGridMargin)> d;
   constexpr std::size_t kStripe = static_cast<std::size_t>(kGridMargin), kOften = 64 * kStripe;
   double total = 0;
@@ -92,7 +93,7 @@ HWY_INLINE double dot_product(const Real* a, const Real* b, std::size_t count) {
 
 /// y = s a + y, or y = a + s y.
 template <class Real>
-HWY_INLINE void combine(bool scale_y, Real s, const Real* a, Real* y, std::size_t count) {
+HWY_ATTR void combine(bool scale_y, Real s, const Real* a, Real* y, std::size_t count) {
   const hn::CappedTag<Real, static_cast<std::size_t>(kGridMargin)> d;
   const auto factor = hn::Set(d, s);
   for (std::size_t n = 0; n < count; n += hn::Lanes(d)) {
@@ -147,38 +148,21 @@ HWY_INLINE void invert_grid(SpringGrid<Real>& g) {
   }
 }
 
-HWY_ATTR void multiply_f32(const SpringGrid<float>& g, const float* p, float* y) {
+template <class Real>
+HWY_ATTR void multiply_springs(const SpringGrid<Real>& g, const Real* p, Real* y) {
   g.factored ? multiply_grid<FactoredBlocks>(g, p, y) : multiply_grid<PlaneBlocks>(g, p, y);
 }
-HWY_ATTR void multiply_f64(const SpringGrid<double>& g, const double* p, double* y) {
-  g.factored ? multiply_grid<FactoredBlocks>(g, p, y) : multiply_grid<PlaneBlocks>(g, p, y);
-}
-HWY_ATTR void smooth_f32(const SpringGrid<float>& g, float w, const float* r, const float* y,
-                         float* z) {
-  smooth_grid(g, w, r, y, z);
-}
-HWY_ATTR void smooth_f64(const SpringGrid<double>& g, double w, const double* r, const double* y,
-                         double* z) {
-  smooth_grid(g, w, r, y, z);
-}
-HWY_ATTR double dot_f32(const float* a, const float* b, std::size_t count) {
-  return dot_product(a, b, count);
-}
-HWY_ATTR double dot_f64(const double* a, const double* b, std::size_t count) {
-  return dot_product(a, b, count);
-}
-HWY_ATTR void combine_f32(bool scale_y, float s, const float* a, float* y, std::size_t count) {
-  combine(scale_y, s, a, y, count);
-}
-HWY_ATTR void combine_f64(bool scale_y, double s, const double* a, double* y, std::size_t count) {
-  combine(scale_y, s, a, y, count);
-}
-HWY_ATTR void invert_f32(SpringGrid<float>& g) {
+
+template <class Real>
+HWY_ATTR void invert_blocks(SpringGrid<Real>& g) {
   g.factored ? invert_grid<FactoredBlocks>(g) : invert_grid<PlaneBlocks>(g);
 }
-HWY_ATTR void invert_f64(SpringGrid<double>& g) {
-  g.factored ? invert_grid<FactoredBlocks>(g) : invert_grid<PlaneBlocks>(g);
-}
+
+WEFT_KERNEL(multiply_springs);
+WEFT_KERNEL(smooth_grid);
+WEFT_KERNEL(dot_product);
+WEFT_KERNEL(combine);
+WEFT_KERNEL(invert_blocks);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

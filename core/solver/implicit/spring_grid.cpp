@@ -14,18 +14,15 @@
 #include <cassert>
 #include <cmath>
 
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(multiply_f32);
-HWY_EXPORT(multiply_f64);
-HWY_EXPORT(smooth_f32);
-HWY_EXPORT(smooth_f64);
-HWY_EXPORT(dot_f32);
-HWY_EXPORT(dot_f64);
-HWY_EXPORT(combine_f32);
-HWY_EXPORT(combine_f64);
-HWY_EXPORT(invert_f32);
-HWY_EXPORT(invert_f64);
+WEFT_EXPORT_KERNEL(multiply_springs);
+WEFT_EXPORT_KERNEL(smooth_grid);
+WEFT_EXPORT_KERNEL(dot_product);
+WEFT_EXPORT_KERNEL(combine);
+WEFT_EXPORT_KERNEL(invert_blocks);
 
 namespace {
 
@@ -36,55 +33,42 @@ namespace {
 
 }  // namespace
 
-void multiply(const SpringGrid<float>& grid, const float* p, float* y) {
-  HWY_DYNAMIC_DISPATCH(multiply_f32)(grid, p, y);
-}
-void multiply(const SpringGrid<double>& grid, const double* p, double* y) {
-  HWY_DYNAMIC_DISPATCH(multiply_f64)(grid, p, y);
-}
-void smooth_from_zero(const SpringGrid<float>& grid, float omega, const float* r, float* z) {
-  HWY_DYNAMIC_DISPATCH(smooth_f32)(grid, omega, r, nullptr, z);
-}
-void smooth_from_zero(const SpringGrid<double>& grid, double omega, const double* r, double* z) {
-  HWY_DYNAMIC_DISPATCH(smooth_f64)(grid, omega, r, nullptr, z);
-}
-void smooth(const SpringGrid<float>& grid, float omega, const float* r, const float* y, float* z) {
-  HWY_DYNAMIC_DISPATCH(smooth_f32)(grid, omega, r, y, z);
-}
-void smooth(const SpringGrid<double>& grid, double omega, const double* r, const double* y,
-            double* z) {
-  HWY_DYNAMIC_DISPATCH(smooth_f64)(grid, omega, r, y, z);
-}
-double dot(const float* a, const float* b, std::size_t count) {
-  assert(is_whole(count));
-  return HWY_DYNAMIC_DISPATCH(dot_f32)(a, b, count);
-}
-double dot(const double* a, const double* b, std::size_t count) {
-  assert(is_whole(count));
-  return HWY_DYNAMIC_DISPATCH(dot_f64)(a, b, count);
-}
-void add_scaled(float s, const float* a, float* y, std::size_t count) {
-  assert(is_whole(count));
-  HWY_DYNAMIC_DISPATCH(combine_f32)(false, s, a, y, count);
-}
-void add_scaled(double s, const double* a, double* y, std::size_t count) {
-  assert(is_whole(count));
-  HWY_DYNAMIC_DISPATCH(combine_f64)(false, s, a, y, count);
-}
-void scale_and_add(float s, const float* a, float* y, std::size_t count) {
-  assert(is_whole(count));
-  HWY_DYNAMIC_DISPATCH(combine_f32)(true, s, a, y, count);
-}
-void scale_and_add(double s, const double* a, double* y, std::size_t count) {
-  assert(is_whole(count));
-  HWY_DYNAMIC_DISPATCH(combine_f64)(true, s, a, y, count);
+template <class Real>
+void multiply(const SpringGrid<Real>& grid, const Real* p, Real* y) {
+  WEFT_RUN(multiply_springs, Real)(grid, p, y);
 }
 
-void invert_diagonal(SpringGrid<float>& grid) {
-  HWY_DYNAMIC_DISPATCH(invert_f32)(grid);
+template <class Real>
+void smooth_from_zero(const SpringGrid<Real>& grid, Real omega, const Real* r, Real* z) {
+  WEFT_RUN(smooth_grid, Real)(grid, omega, r, nullptr, z);
 }
-void invert_diagonal(SpringGrid<double>& grid) {
-  HWY_DYNAMIC_DISPATCH(invert_f64)(grid);
+
+template <class Real>
+void smooth(const SpringGrid<Real>& grid, Real omega, const Real* r, const Real* y, Real* z) {
+  WEFT_RUN(smooth_grid, Real)(grid, omega, r, y, z);
+}
+
+template <class Real>
+double dot(const Real* a, const Real* b, std::size_t count) {
+  assert(is_whole(count));
+  return WEFT_RUN(dot_product, Real)(a, b, count);
+}
+
+template <class Real>
+void add_scaled(Real s, const Real* a, Real* y, std::size_t count) {
+  assert(is_whole(count));
+  WEFT_RUN(combine, Real)(false, s, a, y, count);
+}
+
+template <class Real>
+void scale_and_add(Real s, const Real* a, Real* y, std::size_t count) {
+  assert(is_whole(count));
+  WEFT_RUN(combine, Real)(true, s, a, y, count);
+}
+
+template <class Real>
+void invert_diagonal(SpringGrid<Real>& grid) {
+  WEFT_RUN(invert_blocks, Real)(grid);
 }
 
 GridLayout::GridLayout(int row_count, int column_count) : rows(row_count), columns(column_count) {
@@ -186,12 +170,10 @@ std::array<Real, 6> inverse_of(const std::array<Real, 6>& a) {
           (a[0] * a[3] - a[1] * a[1]) * s};
 }
 
-#define WEFT_INSTANTIATE(Real)      \
-  template struct SpringGrid<Real>; \
-  template std::array<Real, 6> inverse_of(const std::array<Real, 6>&);
-WEFT_INSTANTIATE(float)
-WEFT_INSTANTIATE(double)
-#undef WEFT_INSTANTIATE
+WEFT_INSTANTIATE_FUNCTIONS(multiply, smooth_from_zero, smooth, dot, add_scaled, scale_and_add,
+                           invert_diagonal, inverse_of)
+template struct SpringGrid<float>;
+template struct SpringGrid<double>;
 
 }  // namespace weft
 #endif

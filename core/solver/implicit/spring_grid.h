@@ -77,37 +77,36 @@ struct SpringGrid {
 };
 
 /// y = A p. Pinned particles get 0.
-void multiply(const SpringGrid<float>& grid, const float* p, float* y);
-void multiply(const SpringGrid<double>& grid, const double* p, double* y);
+template <class Real>
+void multiply(const SpringGrid<Real>& grid, const Real* p, Real* y);
 
 /// z = omega D^-1 r with D the diagonal blocks.
-void smooth_from_zero(const SpringGrid<float>& grid, float omega, const float* r, float* z);
-void smooth_from_zero(const SpringGrid<double>& grid, double omega, const double* r, double* z);
+template <class Real>
+void smooth_from_zero(const SpringGrid<Real>& grid, Real omega, const Real* r, Real* z);
 
 /// z += omega D^-1 (r - y), where y = A z.
-void smooth(const SpringGrid<float>& grid, float omega, const float* r, const float* y, float* z);
-void smooth(const SpringGrid<double>& grid, double omega, const double* r, const double* y,
-            double* z);
+template <class Real>
+void smooth(const SpringGrid<Real>& grid, Real omega, const Real* r, const Real* y, Real* z);
 
 /// Sum of a[k] b[k], in the same order on all instruction sets.
 /// @param count  a multiple of kGridMargin
-double dot(const float* a, const float* b, std::size_t count);
-double dot(const double* a, const double* b, std::size_t count);
+template <class Real>
+double dot(const Real* a, const Real* b, std::size_t count);
 
 /// y += s a.
 /// @param count  likewise
-void add_scaled(float s, const float* a, float* y, std::size_t count);
-void add_scaled(double s, const double* a, double* y, std::size_t count);
+template <class Real>
+void add_scaled(Real s, const Real* a, Real* y, std::size_t count);
 
 /// y = a + s y.
-void scale_and_add(float s, const float* a, float* y, std::size_t count);
-void scale_and_add(double s, const double* a, double* y, std::size_t count);
+template <class Real>
+void scale_and_add(Real s, const Real* a, Real* y, std::size_t count);
 
 /// Inverts the diagonal blocks: each particle's own block, those of its springs, and half the sum
 /// of the absolute values of its row of the bending matrix, so that no eigenvalue of D^-1 A exceeds
 /// 2 (for springs and rows alike 2 D - A is a sum of squares).
-void invert_diagonal(SpringGrid<float>& grid);
-void invert_diagonal(SpringGrid<double>& grid);
+template <class Real>
+void invert_diagonal(SpringGrid<Real>& grid);
 
 /// Inverse of a symmetric matrix, both as xx xy xz yy yz zz; zeros if it is singular.
 template <class Real>

@@ -8,6 +8,7 @@
 #endif
 
 #include "core/forces/spring.h"
+#include "core/math/kernels.h"
 #include "core/solver/implicit/grid_planes-inl.h"
 #include "core/solver/implicit/spring_planes.h"
 
@@ -108,8 +109,8 @@ HWY_INLINE void add_up_row(SpringPlanes<Real>& springs, const SpringGrid<Real>& 
 }
 
 template <class Real>
-HWY_INLINE void linearise_grid(SpringPlanes<Real>& springs, Real rate, const Real* x, const Real* v,
-                               SpringGrid<Real>& grid, Real* force) {
+HWY_ATTR void linearise_grid(SpringPlanes<Real>& springs, Real rate, const Real* x, const Real* v,
+                             SpringGrid<Real>& grid, Real* force) {
   for (Real& number : springs.forces) number = 0;
   for (int r = 0; r < grid.layout.rows; ++r) {
     linearise_row(springs, rate, x, v, r, grid);
@@ -117,14 +118,7 @@ HWY_INLINE void linearise_grid(SpringPlanes<Real>& springs, Real rate, const Rea
   }
 }
 
-HWY_ATTR void linearise_f32(SpringPlanes<float>& springs, float rate, const float* x,
-                            const float* v, SpringGrid<float>& grid, float* force) {
-  linearise_grid(springs, rate, x, v, grid, force);
-}
-HWY_ATTR void linearise_f64(SpringPlanes<double>& springs, double rate, const double* x,
-                            const double* v, SpringGrid<double>& grid, double* force) {
-  linearise_grid(springs, rate, x, v, grid, force);
-}
+WEFT_KERNEL(linearise_grid);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

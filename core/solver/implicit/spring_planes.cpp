@@ -13,18 +13,16 @@
 #include "core/solver/implicit/spring_planes-inl.h"
 
 #if HWY_ONCE
+#include "core/instantiate.h"
+
 namespace weft {
 
-HWY_EXPORT(linearise_f32);
-HWY_EXPORT(linearise_f64);
+WEFT_EXPORT_KERNEL(linearise_grid);
 
-void linearise(SpringPlanes<float>& springs, float rate, const float* x, const float* v,
-               SpringGrid<float>& grid, float* force) {
-  HWY_DYNAMIC_DISPATCH(linearise_f32)(springs, rate, x, v, grid, force);
-}
-void linearise(SpringPlanes<double>& springs, double rate, const double* x, const double* v,
-               SpringGrid<double>& grid, double* force) {
-  HWY_DYNAMIC_DISPATCH(linearise_f64)(springs, rate, x, v, grid, force);
+template <class Real>
+void linearise(SpringPlanes<Real>& springs, Real rate, const Real* x, const Real* v,
+               SpringGrid<Real>& grid, Real* force) {
+  WEFT_RUN(linearise_grid, Real)(springs, rate, x, v, grid, force);
 }
 
 template <class Real>
@@ -59,6 +57,7 @@ SpringPlanes<Real>::SpringPlanes(const GridLayout& layout, const ClothModel<Real
   }
 }
 
+WEFT_INSTANTIATE_FUNCTIONS(linearise)
 template struct SpringPlanes<float>;
 template struct SpringPlanes<double>;
 

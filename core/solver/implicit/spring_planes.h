@@ -28,9 +28,8 @@ struct SpringPlanes {
 /// @param rate   derivative of velocities by positions [1/s]
 /// @param x, v   in the grid's layout [m], [m/s]
 /// @param force  receives the forces, also of pinned particles [N]
-void linearise(SpringPlanes<float>& springs, float rate, const float* x, const float* v,
-               SpringGrid<float>& grid, float* force);
-void linearise(SpringPlanes<double>& springs, double rate, const double* x, const double* v,
-               SpringGrid<double>& grid, double* force);
+template <class Real>
+void linearise(SpringPlanes<Real>& springs, Real rate, const Real* x, const Real* v,
+               SpringGrid<Real>& grid, Real* force);
 
 }  // namespace weft

@@ -215,8 +215,8 @@ TEST_CASE("a mesh is kicked in one pass to the bits of its forces and a kick by 
     const KickedParticles<float> particles{inverse_mass.data(),
                                            has_external ? pull.data()->data() : nullptr};
     Vec3Array<float> by_forces = s.v, at_once = s.v;
-    run_kick({s.x.size(), s.v.data()->data(), by_forces.data()->data(), s.gathered.data()->data(),
-              particles, law});
+    run_kick<float>({s.x.size(), s.v.data()->data(), by_forces.data()->data(),
+                     s.gathered.data()->data(), particles, law});
     MeshPass<float> pass;
     pass.prepare(s.model, s.model.parts[0]);
     for (int again = 0; again < 2; ++again) {
