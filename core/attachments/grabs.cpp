@@ -145,7 +145,7 @@ void for_live(Grabs<Real>& grabs, const ClothState<Real>& state, Visit&& visit) 
 
 /// Limits velocities to kFastestHeld, and subtracts the lost impulse from the force.
 template <class Real>
-void hold_back(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
+void limit_speeds(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
   constexpr Real kMost = static_cast<Real>(kFastestHeld);
   for (std::size_t n = 0; n < grab.particles.size(); ++n) {
     const auto i = static_cast<std::size_t>(grab.particles[n]);
@@ -280,7 +280,7 @@ void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& st
     grab.force = force;
     note_impulses(force, seconds, grab);
   });
-  for_live(grabs, state, [&](Grab<Real>& grab) { hold_back(grab, seconds, state); });
+  for_live(grabs, state, [&](Grab<Real>& grab) { limit_speeds(grab, seconds, state); });
 }
 
 template <class Real>

@@ -62,9 +62,9 @@ bool is_jammed(const Gripper& gripper, const ColliderState& jaw) {
 /// How far a gripper that stays yields in a tick to cloth that jams under it, as it does on its way
 /// to more than its force [m].
 Vec3d yielding(const ColliderState& middle, double max_force, double seconds) {
-  const double excess = middle.pushed.norm() / (max_force * seconds) - 1;
-  if (!(excess > 0)) return Vec3d::Zero();
-  return -middle.pushed.normalized() * (std::min(excess, kMostYielding) * kYieldSpeed * seconds);
+  const double resistance = middle.pushed.norm() / (max_force * seconds);
+  if (!(resistance > 1)) return Vec3d::Zero();
+  return -middle.pushed.normalized() * (yield_speed(resistance) * seconds);
 }
 
 /// How far a gripper goes back in a tick, wherever it was sent [m]: to yield where it stays, and to

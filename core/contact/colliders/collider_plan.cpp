@@ -58,7 +58,7 @@ double next_pace(const ColliderState& state, double pace, double resistance, dou
   const double slowed = pace / (1 + (resistance - 1) * std::min(seconds / kPaceSeconds, 1.0));
   if (slowed >= kLeastColliderPace && !state.blocked) return slowed;
   if (state.press.acts()) return 0;
-  return -std::min(1.0, std::min(resistance - 1, kMostYielding) * kYieldSpeed / speed);
+  return -std::min(1.0, yield_speed(resistance) / speed);
 }
 
 bool contains(const ColliderPair& own, Index collider) {
@@ -133,6 +133,8 @@ void begin_tick(ColliderState& object) {
   object.wanted = object.twist = {};
   object.progress = 0;
   object.blocked = false;
+  object.bracing = object.pinch.braces;
+  object.pinch = {};
   clear_impulses(object);
 }
 
@@ -181,16 +183,12 @@ void plan_object(const std::optional<MotionGoal>& goal, const ColliderPair& own,
   assert(std::max(object.pace.into, object.pace.along) <= 1);
   const MotionGoal stay{object.pose, 0, 0, object.max_force, 0};
   const Vec3d left = step_along_pinch(goal.value_or(stay), own, seconds, states, object);
-  object.bracing = object.pinch.braces;
-  object.pinch = {};
   begin_tick(object);
   if (goal) head_for(*goal, left, seconds, object);
 }
 
 void plan_carried(const Pose& goal, double seconds, ColliderState& object) {
   begin_tick(object);
-  object.bracing = object.pinch.braces;
-  object.pinch = {};
   object.pace = {};
   const Vec3d step = goal.position - object.pose.position;
   head_for({goal, kMostColliderSpeed, kMostColliderTurnSpeed, 0, 0}, step, seconds, object);
@@ -228,6 +226,11 @@ Pace next_paces(const ColliderState& object, double max_force, double seconds) {
     next.yielded = 0;
   }
   return next;
+}
+
+double yield_speed(double resistance) {
+  assert(resistance > 1);
+  return std::min(resistance - 1, kMostYielding) * kYieldSpeed;
 }
 
 }  // namespace weft

@@ -49,4 +49,8 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
 /// @param max_force  [N]
 Pace next_paces(const ColliderState& object, double max_force, double seconds);
 
+/// Speed at which an object yields to what resists with more than its force [m/s].
+/// @param resistance  over its force, more than 1 [1]
+double yield_speed(double resistance);
+
 }  // namespace weft
