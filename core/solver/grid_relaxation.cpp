@@ -121,58 +121,48 @@ void GridRelaxation<Real>::set_masses(const std::vector<Real>& inverse_mass, Rea
 }
 
 template <class Real>
-void GridRelaxation<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt) {
-  assert(fits() && dt > 0);
-  assert(v.size() == x.size());
+template <class Visit>
+void GridRelaxation<Real>::for_each_number(Visit&& visit) const {
+  assert(fits());
   std::size_t i = first_;
   for (int r = 0; r < view_.rows; ++r) {
     for (int c = 0; c < view_.columns; ++c, ++i) {
       const std::ptrdiff_t here = place(r, c);
-      for (int k = 0; k < 3; ++k) {
-        view_.x[k][here] = x[i][k];
-        view_.displacement[k][here] = v[i][k] * dt;
-      }
+      for (int k = 0; k < 3; ++k) visit(i, here, k);
     }
   }
+}
+
+template <class Real>
+void GridRelaxation<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt) {
+  assert(v.size() == x.size() && dt > 0);
+  for_each_number([&](std::size_t i, std::ptrdiff_t here, int k) {
+    view_.x[k][here] = x[i][k];
+    view_.displacement[k][here] = v[i][k] * dt;
+  });
 }
 
 template <class Real>
 void GridRelaxation<Real>::load_force(const Vec3Array<Real>& force) {
-  assert(fits());
-  std::size_t i = first_;
-  for (int r = 0; r < view_.rows; ++r) {
-    for (int c = 0; c < view_.columns; ++c, ++i) {
-      for (int k = 0; k < 3; ++k)
-        at_origin(force_[static_cast<std::size_t>(k)])[place(r, c)] = force[i][k];
-    }
-  }
+  for_each_number([&](std::size_t i, std::ptrdiff_t here, int k) {
+    at_origin(force_[static_cast<std::size_t>(k)])[here] = force[i][k];
+  });
 }
 
 template <class Real>
 void GridRelaxation<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt) const {
-  assert(fits() && dt > 0);
-  assert(v.size() == x.size());
-  std::size_t i = first_;
-  for (int r = 0; r < view_.rows; ++r) {
-    for (int c = 0; c < view_.columns; ++c, ++i) {
-      const std::ptrdiff_t here = place(r, c);
-      for (int k = 0; k < 3; ++k) {
-        x[i][k] = view_.x[k][here];
-        v[i][k] = view_.displacement[k][here] / dt;
-      }
-    }
-  }
+  assert(v.size() == x.size() && dt > 0);
+  for_each_number([&](std::size_t i, std::ptrdiff_t here, int k) {
+    x[i][k] = view_.x[k][here];
+    v[i][k] = view_.displacement[k][here] / dt;
+  });
 }
 
 template <class Real>
 void GridRelaxation<Real>::store_displacements(Vec3Array<Real>& displacement) const {
-  assert(fits());
-  std::size_t i = first_;
-  for (int r = 0; r < view_.rows; ++r) {
-    for (int c = 0; c < view_.columns; ++c, ++i) {
-      for (int k = 0; k < 3; ++k) displacement[i][k] = view_.displacement[k][place(r, c)];
-    }
-  }
+  for_each_number([&](std::size_t i, std::ptrdiff_t here, int k) {
+    displacement[i][k] = view_.displacement[k][here];
+  });
 }
 
 template class GridRelaxation<float>;

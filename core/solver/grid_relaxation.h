@@ -97,6 +97,9 @@ class GridRelaxation {
   std::ptrdiff_t place(int row, int column) const {
     return row * view_.stride + (column % 2) * view_.half + column / 2;
   }
+  /// Calls visit(i, place, k) for each number k of each particle; i is its number in the model.
+  template <class Visit>
+  void for_each_number(Visit&& visit) const;
 
   SweepView<Real> view_;
   GridSprings<Real> springs_;
