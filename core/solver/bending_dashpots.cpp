@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "core/solver/constants.h"
@@ -40,13 +39,13 @@ void for_bands(const Part& part, Executor* executor, Work&& work) {
                [&](int band) { work(part.bands[static_cast<std::size_t>(band)]); });
 }
 
-/// Adds K v to `product` at a band's particles.
-template <class Part, class Band, class Real>
-void multiply(Part& part, const Band& band, const QuadArray<Real>& v, QuadArray<Real>& product) {
-  for (std::size_t f = 0; f < part.families.size(); ++f) {
-    for (const DashpotRun& run : band.touching[f])
-      multiply_dashpots(run, v.data(), band.first, band.end, part.families[f], product.data());
-  }
+/// Calls visit(range) for the numbers of a band's particles.
+template <class Part, class Band, class Visit>
+void for_ranges(const Part& part, const Band& band, Visit&& visit) {
+  if (band.first == band.end) return;
+  if (!part.planar) return visit(NumberRange{part.at(band.first, 0), part.at(band.end, 0)});
+  for (std::size_t k = 0; k < 3; ++k)
+    visit(NumberRange{part.at(band.first, k), part.at(band.end - 1, k) + 1});
 }
 
 }  // namespace
@@ -62,11 +61,15 @@ void BendingDashpots<Real>::prepare(const ClothModel<Real>& model) {
     list.families = dashpot_families(model, part);
     for (const DashpotFamily<Real>& family : list.families)
       list.stencils += family.groups * family.curvatures;
-    divide(part.particles, list);
+    list.planar = !list.families.empty() && !list.families.front().of_triangles;
+    list.whole.first = static_cast<std::size_t>(part.particles.first);
+    list.whole.end = static_cast<std::size_t>(part.particles.end());
+    divide(list);
   }
-  const std::size_t particles = parts_.empty() ? 0 : model.mass.size();
-  for (QuadArray<Real>* array : {&start_, &now_, &before_, &change_, &next_change_, &product_})
-    array->assign(particles, {});
+  const std::size_t numbers = parts_.empty() ? 0 : 4 * model.mass.size();
+  for (AlignedVector<Real>* array :
+       {&inverse_mass_, &start_, &now_, &before_, &change_, &next_change_, &product_})
+    array->assign(numbers, 0);
 }
 
 template <class Real>
@@ -116,10 +119,8 @@ double BendingDashpots<Real>::updates(const ClothModel<Real>& model, double seco
 /// Divides particles into bands, unless most batches would lie on borders: a mesh numbers its
 /// particles as it likes.
 template <class Real>
-void BendingDashpots<Real>::divide(const IndexRange& particles, Part& part) const {
-  const auto first = static_cast<std::size_t>(particles.first),
-             count = static_cast<std::size_t>(particles.count);
-  part.whole = {first, first + count, {}, {}};
+void BendingDashpots<Real>::divide(Part& part) const {
+  const std::size_t first = part.whole.first, count = part.whole.end - first;
   std::size_t batches = 0, touched = 0;
   for (const DashpotFamily<Real>& family : part.families) {
     part.whole.shares.push_back({0, family.batches, true});
@@ -135,9 +136,11 @@ void BendingDashpots<Real>::divide(const IndexRange& particles, Part& part) cons
       const std::size_t places = family.slots * family.kLanes;
       for (std::size_t batch = 0; batch < family.batches; ++batch) {
         const auto place = family.places.begin() + static_cast<std::ptrdiff_t>(batch * places);
-        const auto own = std::count_if(
-            place, place + static_cast<std::ptrdiff_t>(places),
-            [&](std::uint32_t at) { return at >= 4 * band.first && at < 4 * band.end; });
+        const auto own = std::count_if(place, place + static_cast<std::ptrdiff_t>(places),
+                                       [&](std::uint32_t at) {
+                                         const std::size_t particle = family.particle(at);
+                                         return particle >= band.first && particle < band.end;
+                                       });
         if (own == 0) continue;
         const bool inside = own == static_cast<std::ptrdiff_t>(places);
         if (runs.empty() || runs.back().end != batch || runs.back().inside != inside)
@@ -152,50 +155,74 @@ void BendingDashpots<Real>::divide(const IndexRange& particles, Part& part) cons
     part.bands.clear();
 }
 
+/// Copies vectors into `change_`.
+template <class Real>
+void BendingDashpots<Real>::load(const Part& part, const Band& band, const Vec3Array<Real>& from) {
+  for (std::size_t i = band.first; i < band.end; ++i) {
+    for (std::size_t k = 0; k < 3; ++k)
+      change_[part.at(i, k)] = from[i][static_cast<Eigen::Index>(k)];
+  }
+}
+
 /// Finds the geometry of all stencils.
 template <class Real>
 void BendingDashpots<Real>::aim(Part& part, Executor* executor, const Vec3Array<Real>& x) {
-  for_bands(part, executor, [&](const Band& band) {
-    to_quads(std::span<const Vec3<Real>>(x).subspan(band.first, band.end - band.first),
-             change_.data() + band.first);
-  });
+  for_bands(part, executor, [&](const Band& band) { load(part, band, x); });
   for_bands(part, executor, [&](const Band& band) {
     for (std::size_t f = 0; f < part.families.size(); ++f)
       aim_dashpots(band.shares[f], change_.data(), part.families[f]);
   });
 }
 
-/// Takes over velocities.
+/// Takes over velocities and inverse masses.
 template <class Real>
-void BendingDashpots<Real>::begin(const Band& band, const Vec3Array<Real>& v) {
-  for (QuadArray<Real>* array : {&start_, &before_, &product_})
-    std::fill(array->data() + band.first, array->data() + band.end, Quad<Real>{});
-  to_quads(std::span<const Vec3<Real>>(v).subspan(band.first, band.end - band.first),
-           change_.data() + band.first);
+void BendingDashpots<Real>::begin(const Part& part, const Band& band,
+                                  const ClothState<Real>& state) {
+  load(part, band, state.v);
+  for (std::size_t i = band.first; i < band.end; ++i) {
+    for (std::size_t k = 0; k < 3; ++k) inverse_mass_[part.at(i, k)] = state.inverse_mass[i];
+  }
+  for_ranges(part, band, [&](const NumberRange& range) {
+    for (AlignedVector<Real>* array : {&start_, &before_, &product_})
+      std::fill(array->data() + range.first, array->data() + range.end, Real(0));
+  });
+}
+
+/// Adds K times the present change to `product` at a band's particles.
+template <class Real>
+void BendingDashpots<Real>::multiply(Part& part, const Band& band, AlignedVector<Real>& product) {
+  for (std::size_t f = 0; f < part.families.size(); ++f) {
+    for (const DashpotRun& run : band.touching[f])
+      multiply_dashpots(run, change_.data(), band.first, band.end, part.families[f],
+                        product.data());
+  }
+}
+
+template <class Real>
+StageNumbers<Real> BendingDashpots<Real>::numbers() {
+  return {inverse_mass_.data(), start_.data(),   now_.data(),
+          before_.data(),       product_.data(), next_change_.data()};
 }
 
 /// The first stage.
 template <class Real>
-void BendingDashpots<Real>::open(Part& part, const Band& band, Real by_start,
-                                 const std::vector<Real>& inverse_mass) {
-  multiply(part, band, change_, start_);
-  for (std::size_t i = band.first; i < band.end; ++i) {
-    now_[i] = start_[i] * by_start;
-    next_change_[i] = now_[i] * inverse_mass[i];
-  }
+void BendingDashpots<Real>::open(Part& part, const Band& band, Real by_start) {
+  multiply(part, band, start_);
+  for_ranges(part, band,
+             [&](const NumberRange& range) { open_dashpot_stages(range, by_start, numbers()); });
 }
 
 /// A later stage, into `before_`. Other bands read `change_` meanwhile.
 template <class Real>
-void BendingDashpots<Real>::advance(Part& part, const Band& band, const Factors& by,
-                                    const std::vector<Real>& inverse_mass) {
-  multiply(part, band, change_, product_);
-  for (std::size_t i = band.first; i < band.end; ++i) {
-    before_[i] =
-        now_[i] * by.now + before_[i] * by.before + product_[i] * by.product + start_[i] * by.start;
-    product_[i] = {};
-    next_change_[i] = before_[i] * inverse_mass[i];
-  }
+void BendingDashpots<Real>::advance(Part& part, const Band& band, const StageFactors<Real>& by) {
+  multiply(part, band, product_);
+  for_ranges(part, band,
+             [&](const NumberRange& range) { advance_dashpot_stage(range, by, numbers()); });
+}
+
+template <class Real>
+Vec3<Real> BendingDashpots<Real>::impulse_on(const Part& part, std::size_t particle) const {
+  return {now_[part.at(particle, 0)], now_[part.at(particle, 1)], now_[part.at(particle, 2)]};
 }
 
 /// Finds the impulses of the dashpots on all particles, into `now_`, and changes the velocities.
@@ -205,24 +232,22 @@ void BendingDashpots<Real>::pass(Part& part, int stages, Real seconds, Executor*
   assert(stages >= 3 && stages % 2 == 1);
   const auto b = [](int j) { return j < 2 ? 1.0 / 3 : (j * j + j - 2.0) / (2.0 * j * (j + 1)); };
   const double w = 4.0 / (stages * stages + stages - 2.0);
-  for_bands(part, executor, [&](const Band& band) { begin(band, state.v); });
+  for_bands(part, executor, [&](const Band& band) { begin(part, band, state); });
   const Real by_start = -seconds * static_cast<Real>(w / 3);
-  for_bands(part, executor,
-            [&](const Band& band) { open(part, band, by_start, state.inverse_mass); });
+  for_bands(part, executor, [&](const Band& band) { open(part, band, by_start); });
   std::swap(change_, next_change_);
   for (int j = 2; j <= stages; ++j) {
     const double mu = (2.0 * j - 1) / j * b(j) / b(j - 1), nu = -(j - 1.0) / j * b(j) / b(j - 2);
-    const Factors by{static_cast<Real>(mu), static_cast<Real>(nu),
-                     -seconds * static_cast<Real>(mu * w),
-                     -seconds * static_cast<Real>(mu * w * b(j - 1))};
-    for_bands(part, executor,
-              [&](const Band& band) { advance(part, band, by, state.inverse_mass); });
+    const StageFactors<Real> by{static_cast<Real>(mu), static_cast<Real>(nu),
+                                -seconds * static_cast<Real>(mu * w),
+                                -seconds * static_cast<Real>(mu * w * b(j - 1))};
+    for_bands(part, executor, [&](const Band& band) { advance(part, band, by); });
     std::swap(now_, before_);
     std::swap(change_, next_change_);
   }
   for_bands(part, executor, [&](const Band& band) {
     for (std::size_t i = band.first; i < band.end; ++i)
-      state.v[i] += to_vector(now_[i]) * state.inverse_mass[i];
+      state.v[i] += impulse_on(part, i) * state.inverse_mass[i];
   });
 }
 
@@ -230,7 +255,7 @@ template <class Real>
 void BendingDashpots<Real>::act(const ClothModel<Real>& model, double seconds,
                                 ClothState<Real>& state, HeldForces<Real>* held, Executor* executor,
                                 Profile& profile) {
-  assert(seconds > 0 && (parts_.empty() || state.v.size() == now_.size()));
+  assert(seconds > 0 && (parts_.empty() || 4 * state.v.size() == now_.size()));
   const StageTimer timer(profile, Stage::bending, 0);
   for (Part& part : parts_) {
     if (state.is_asleep(part.number)) continue;
@@ -239,7 +264,7 @@ void BendingDashpots<Real>::act(const ClothModel<Real>& model, double seconds,
     aim(part, executor, state.x);
     pass(part, stages, static_cast<Real>(seconds), executor, state);
     for (Index i = cloth.particles.first; held && i < cloth.particles.end(); ++i) {
-      const Vec3<Real> impulse = to_vector(now_[static_cast<std::size_t>(i)]);
+      const Vec3<Real> impulse = impulse_on(part, static_cast<std::size_t>(i));
       if (held->holds(i)) held->push(i, impulse.template cast<double>());
     }
     profile[Stage::bending].work += static_cast<std::size_t>(stages) * part.stencils;

@@ -6,7 +6,7 @@
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
 #include "core/executor.h"
-#include "core/math/quad.h"
+#include "core/math/aligned_vector.h"
 #include "core/profile.h"
 #include "core/solver/dashpot_kernels.h"
 #include "core/solver/dashpot_passes.h"
@@ -68,30 +68,36 @@ class BendingDashpots {
     std::size_t number = 0;
     std::vector<DashpotFamily<Real>> families;
     std::size_t stencils = 0;
+    bool planar = false;      ///< a grid, whose vectors are in planes (dashpot_groups.h)
     Band whole;               ///< all particles
     std::vector<Band> bands;  ///< the same in several; empty if that is not worth it
+
+    /// Where component k of a particle's vectors is.
+    std::size_t at(std::size_t particle, std::size_t k) const {
+      if (!planar) return 4 * particle + k;
+      return 4 * whole.first + k * (whole.end - whole.first) + (particle - whole.first);
+    }
   };
 
-  /// Factors of a stage of the method.
-  struct Factors {
-    Real now, before, product, start;
-  };
-
-  void divide(const IndexRange& particles, Part& part) const;
-  void begin(const Band& band, const Vec3Array<Real>& v);
-  void open(Part& part, const Band& band, Real by_start, const std::vector<Real>& inverse_mass);
-  void advance(Part& part, const Band& band, const Factors& by,
-               const std::vector<Real>& inverse_mass);
+  void divide(Part& part) const;
+  void load(const Part& part, const Band& band, const Vec3Array<Real>& from);
+  void begin(const Part& part, const Band& band, const ClothState<Real>& state);
+  void multiply(Part& part, const Band& band, AlignedVector<Real>& product);
+  void open(Part& part, const Band& band, Real by_start);
+  void advance(Part& part, const Band& band, const StageFactors<Real>& by);
   void aim(Part& part, Executor* executor, const Vec3Array<Real>& x);
   void pass(Part& part, int stages, Real seconds, Executor* executor, ClothState<Real>& state);
+  Vec3<Real> impulse_on(const Part& part, std::size_t particle) const;
+  StageNumbers<Real> numbers();
 
   std::vector<Part> parts_;
-  // Of each particle:
-  QuadArray<Real> start_;         ///< K times the velocities at the start [N]
-  QuadArray<Real> now_, before_;  ///< impulses after a stage and the one before it [N s]
+  // Four numbers for each particle:
+  AlignedVector<Real> inverse_mass_;  ///< for each number [1/kg]
+  AlignedVector<Real> start_;         ///< K times the velocities at the start [N]
+  AlignedVector<Real> now_, before_;  ///< impulses after a stage and the one before it [N s]
   /// Velocities, and then how far they change by these, for this stage and the next one [m/s].
-  QuadArray<Real> change_, next_change_;
-  QuadArray<Real> product_;  ///< K times these [N]
+  AlignedVector<Real> change_, next_change_;
+  AlignedVector<Real> product_;  ///< K times these [N]
 };
 
 extern template class BendingDashpots<float>;

@@ -10,6 +10,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <type_traits>
 
 #include <hwy/highway.h>
 
@@ -23,73 +24,135 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+template <auto Value>
+using Constant = std::integral_constant<decltype(Value), Value>;
+
+/// Forces on the particles of a batch, by slot and lane: as quads of triangles, else component by
+/// component. They begin as whatever was there.
+template <class Real, bool OfTriangles>
+struct BatchForces {
+  using Family = DashpotFamily<Real>;
+  static constexpr std::size_t kLanes = Family::kLanes, kNumbers = OfTriangles
+                                                                       ? 4 * Family::kMostSlots
+                                                                       : 3 * Family::kMostGridSlots;
+  HWY_ALIGN Real numbers[kNumbers * kLanes];
+
+  template <class D>
+  HWY_INLINE void set(D d, const Triple<hn::Vec<D>>& force, std::size_t slot, std::size_t lane) {
+    if constexpr (OfTriangles) {
+      std::uint32_t to[kLanes];
+      for (std::size_t k = 0; k < hn::Lanes(d); ++k)
+        to[k] = static_cast<std::uint32_t>(4 * (slot * kLanes + lane + k));
+      scatter_quads(d, force, numbers, to, hn::Lanes(d));
+    } else {
+      Real* const to = numbers + 3 * slot * kLanes + lane;
+      hn::StoreU(force.x, d, to);
+      hn::StoreU(force.y, d, to + kLanes);
+      hn::StoreU(force.z, d, to + 2 * kLanes);
+    }
+  }
+
+  /// Adds them, slot by slot and lane by lane, whatever the width of a vector: several may be on
+  /// the same particle.
+  /// @tparam InRows  the particles of a slot are neighbours, and all are in
+  /// @param is_in    whether a particle of the model is to be given something
+  template <bool InRows, class IsIn>
+  HWY_INLINE void give(const Family& family, std::size_t batch, const IsIn& is_in, Real* to) const {
+    const std::uint32_t* place = family.places.data() + batch * family.slots * kLanes;
+    for (std::size_t slot = 0; slot < family.slots; ++slot, place += kLanes) {
+      if constexpr (InRows) {
+        give_row(3 * slot, family.plane, to + *place);
+        continue;
+      }
+      for (std::size_t k = 0; k < kLanes; ++k) {
+        if (is_in(family.particle(place[k]))) give_one(slot, k, family.plane, to + place[k]);
+      }
+    }
+  }
+
+ private:
+  HWY_INLINE void give_row(std::size_t number, std::size_t plane, Real* to) const {
+    const hn::CappedTag<Real, kLanes> d;
+    for (std::size_t c = 0; c < 3; ++c) {
+      for (std::size_t k = 0; k < kLanes; k += hn::Lanes(d)) {
+        Real* const at = to + c * plane + k;
+        hn::StoreU(hn::Add(hn::LoadU(d, at), hn::LoadU(d, numbers + (number + c) * kLanes + k)), d,
+                   at);
+      }
+    }
+  }
+  HWY_INLINE void give_one(std::size_t slot, std::size_t lane, std::size_t plane, Real* to) const {
+    if constexpr (OfTriangles) {
+      Quad<Real> force, sum;
+      std::memcpy(&force.lanes, numbers + 4 * (slot * kLanes + lane), sizeof force.lanes);
+      std::memcpy(&sum.lanes, to, sizeof sum.lanes);
+      force.lanes[3] = 0;
+      sum += force;
+      std::memcpy(to, &sum.lanes, sizeof sum.lanes);
+    } else {
+      for (std::size_t c = 0; c < 3; ++c) to[c * plane] += numbers[(3 * slot + c) * kLanes + lane];
+    }
+  }
+};
+
+/// How a family reads and gives.
+enum class Reading {
+  triangles,  ///< quads of any particles
+  rows,       ///< planes, of neighbours in a row
+  anywhere,   ///< planes, of any particles
+};
+
 /// Groups of a batch, as many as a vector has lanes.
-/// @tparam Curvatures   of each
-/// @tparam OfTriangles  see DashpotFamily
-template <class Real, std::size_t Curvatures, bool OfTriangles>
+/// @tparam Curvatures  of each
+template <class Real, std::size_t Curvatures, Reading How>
 struct DashpotLanes {
   using Family = DashpotFamily<Real>;
-  using D = hn::CappedTag<Real, Family::kLanes>;
+  static constexpr bool kOfTriangles = How == Reading::triangles;
+  using D = hn::CappedTag<Real, kOfTriangles ? 8 : Family::kLanes>;  // quads come in eights at most
   using V = hn::Vec<D>;
   static constexpr std::size_t kLanes = Family::kLanes;
   /// Where the line f ends.
-  static constexpr std::size_t kEnd = OfTriangles ? 2 : 3;
+  static constexpr std::size_t kEnd = kOfTriangles ? 2 : 3;
 
-  std::size_t slots;
+  std::size_t slots, plane, first_lane;
   const std::uint32_t* place;
   const Real *weights, *viscosity;
   Real* geometry;
 
   /// @param lane  of the batch, the first of these
   HWY_INLINE DashpotLanes(Family& family, std::size_t batch, std::size_t lane)
-      : slots(family.slots), place(family.places.data() + batch * family.slots * kLanes + lane),
-        weights(OfTriangles
-                    ? family.weights.data() + batch * Curvatures * family.slots * kLanes + lane
-                    : family.weights.data()),
+      : slots(slots_of(family)), plane(family.plane), first_lane(lane),
+        place(family.places.data() + batch * slots * kLanes + lane),
+        weights(kOfTriangles ? family.weights.data() + batch * Curvatures * slots * kLanes + lane
+                             : family.weights.data()),
         viscosity(family.viscosity.data() + batch * Curvatures * kLanes + lane),
         geometry(family.geometry.data() + batch * family.geometry_numbers() * kLanes + lane) {}
 
+  /// Those of grids are known to the compiler.
+  static HWY_INLINE std::size_t slots_of(const Family& family) {
+    if constexpr (kOfTriangles) return family.slots;
+    return Curvatures == 2 ? 5 : 4;
+  }
   HWY_INLINE V weight(std::size_t curvature, std::size_t slot) const {
-    const Real* const first = weights + (curvature * slots + slot) * (OfTriangles ? kLanes : 1);
-    return OfTriangles ? hn::LoadU(D(), first) : hn::Set(D(), *first);
+    const Real* const first = weights + (curvature * slots + slot) * (kOfTriangles ? kLanes : 1);
+    return kOfTriangles ? hn::LoadU(D(), first) : hn::Set(D(), *first);
   }
-  HWY_INLINE Triple<V> take(const Quad<Real>* from, std::size_t slot) const {
-    return gather_quads(D(), from, place + slot * kLanes);
+  HWY_INLINE Triple<V> take(const Real* from, std::size_t slot) const {
+    const D d;
+    const std::uint32_t* const at = place + slot * kLanes;
+    if constexpr (kOfTriangles)
+      return gather_quads(d, reinterpret_cast<const Quad<Real>*>(from), at);
+    if constexpr (How == Reading::rows) {
+      const Real* const x = from + *at;
+      return {hn::LoadU(d, x), hn::LoadU(d, x + plane), hn::LoadU(d, x + 2 * plane)};
+    }
+    HWY_ALIGN Real of[3][kLanes];
+    for (std::size_t k = 0; k < hn::Lanes(d); ++k) {
+      for (std::size_t c = 0; c < 3; ++c) of[c][k] = from[c * plane + at[k]];
+    }
+    return {hn::Load(d, of[0]), hn::Load(d, of[1]), hn::Load(d, of[2])};
   }
 
-  /// Forces on the particles of each lane, slot by slot. They begin as whatever was there.
-  struct Forces {
-    HWY_ALIGN Real numbers[4 * kLanes * Family::kMostSlots];
-
-    static HWY_INLINE std::size_t at(std::size_t lane, std::size_t slot) {
-      return 4 * (lane * Family::kMostSlots + slot);
-    }
-    HWY_INLINE void set(const Triple<V>& force, std::size_t slot) {
-      std::uint32_t to[kLanes];
-      for (std::size_t k = 0; k < hn::Lanes(D()); ++k)
-        to[k] = static_cast<std::uint32_t>(at(k, slot));
-      scatter_quads(D(), force, numbers, to, hn::Lanes(D()));
-    }
-    HWY_INLINE Quad<Real> of(std::size_t lane, std::size_t slot) const {
-      Quad<Real> force;
-      std::memcpy(&force.lanes, numbers + at(lane, slot), sizeof force.lanes);
-      force.lanes[3] = 0;
-      return force;
-    }
-  };
-
-  /// Adds forces lane by lane: in the same order whatever the width of a vector, as several lanes
-  /// may have the same particle.
-  /// @param is_in  whether a place is to be given something
-  template <class IsIn>
-  HWY_INLINE void give(const Forces& forces, const IsIn& is_in, Quad<Real>* to) const {
-    for (std::size_t k = 0; k < hn::Lanes(D()); ++k) {
-      for (std::size_t slot = 0; slot < slots; ++slot) {
-        const std::uint32_t at = place[slot * kLanes + k];
-        if (is_in(at)) to[at / 4] += forces.of(k, slot);
-      }
-    }
-  }
   HWY_INLINE V load(std::size_t number) const { return hn::LoadU(D(), geometry + number * kLanes); }
   HWY_INLINE Triple<V> load_three(std::size_t number) const {
     return {load(number), load(number + 1), load(number + 2)};
@@ -106,7 +169,7 @@ struct DashpotLanes {
   /// Calls visit(slot, difference from slot 0) for all others, and returns what the lines e and f
   /// are of the differences.
   template <class Visit>
-  HWY_INLINE std::array<Triple<V>, 2> for_differences(const Quad<Real>* of, Visit&& visit) const {
+  HWY_INLINE std::array<Triple<V>, 2> for_differences(const Real* of, Visit&& visit) const {
     const Triple<V> origin = take(of, 0);
     const auto next = [&](std::size_t slot) HWY_ATTR __attribute__((always_inline)) {
       const Triple<V> away = take(of, slot) - origin;
@@ -115,12 +178,12 @@ struct DashpotLanes {
     };
     const Triple<V> e = next(1);
     Triple<V> f = next(2);
-    if constexpr (!OfTriangles) f = next(3) - f;
+    if constexpr (!kOfTriangles) f = next(3) - f;
     for (std::size_t slot = kEnd + 1; slot < slots; ++slot) next(slot);
     return {e, f};
   }
 
-  HWY_INLINE void aim(const Quad<Real>* x) const {
+  HWY_INLINE void aim(const Real* x) const {
     const D d;
     const V zero = hn::Zero(d);
     std::array<Triple<V>, Curvatures> value;
@@ -157,8 +220,8 @@ struct DashpotLanes {
     }
   }
 
-  template <class IsIn>
-  HWY_INLINE void multiply(const Quad<Real>* v, const IsIn& is_in, Quad<Real>* product) const {
+  /// @param forces  on the particles of these lanes
+  HWY_INLINE void multiply(const Real* v, BatchForces<Real, kOfTriangles>& forces) const {
     const D d;
     const Triple<V> normal = load_three(6);
     std::array<V, Curvatures> rate;
@@ -179,7 +242,6 @@ struct DashpotLanes {
       aside = aside + turn * rate[k];
     }
     const Triple<V> by_e = cross(f, aside), by_f = cross(aside, e);
-    Forces forces;
     for (std::size_t slot = 0; slot < slots; ++slot) {
       V along = hn::Mul(weight(0, slot), rate[0]);
       for (std::size_t k = 1; k < Curvatures; ++k)
@@ -188,56 +250,110 @@ struct DashpotLanes {
       if (slot == 0) force = force - by_e;
       if (slot == 1) force = force + by_e;
       if (slot == kEnd) force = force + by_f;
-      if (slot == (OfTriangles ? 0 : 2)) force = force - by_f;
-      forces.set(force, slot);
+      if (slot == (kOfTriangles ? 0 : 2)) force = force - by_f;
+      forces.set(D(), force, slot, first_lane);
     }
-    give(forces, is_in, product);
   }
 };
 
-/// Calls work(lanes) for all groups of some batches.
-template <std::size_t Curvatures, bool OfTriangles, class Real, class Work>
-HWY_INLINE void for_lanes(std::size_t first_batch, std::size_t end_batch,
-                          DashpotFamily<Real>& family, Work&& work) {
-  using Lanes = DashpotLanes<Real, Curvatures, OfTriangles>;
-  for (std::size_t batch = first_batch; batch < end_batch; ++batch) {
-    for (std::size_t lane = 0; lane < Lanes::kLanes; lane += hn::Lanes(typename Lanes::D()))
-      work(Lanes(family, batch, lane));
-  }
+/// Calls work(lanes) for all groups of a batch.
+template <std::size_t Curvatures, Reading How, class Real, class Work>
+HWY_INLINE void for_lanes(std::size_t batch, DashpotFamily<Real>& family, Work&& work) {
+  using Lanes = DashpotLanes<Real, Curvatures, How>;
+  for (std::size_t lane = 0; lane < Lanes::kLanes; lane += hn::Lanes(typename Lanes::D()))
+    work(Lanes(family, batch, lane));
 }
 
-/// The same for any family.
+/// Calls work(curvatures, reading, batch), the first two as constants, for batches of any family.
 template <class Real, class Work>
-HWY_INLINE void for_all_lanes(std::size_t first_batch, std::size_t end_batch,
-                              DashpotFamily<Real>& family, Work&& work) {
-  if (family.of_triangles)
-    for_lanes<3, true>(first_batch, end_batch, family, work);
-  else if (family.curvatures == 2)
-    for_lanes<2, false>(first_batch, end_batch, family, work);
-  else
-    for_lanes<1, false>(first_batch, end_batch, family, work);
-}
-
-template <class Real>
-HWY_ATTR void aim(const DashpotRun& run, const Quad<Real>* x, DashpotFamily<Real>& family) {
-  for_all_lanes(run.first, run.end, family, [&](const auto& lanes) HWY_ATTR { lanes.aim(x); });
-}
-
-template <class Real>
-HWY_ATTR void multiply(const DashpotRun& run, const Quad<Real>* v, std::size_t first,
-                       std::size_t end, DashpotFamily<Real>& family, Quad<Real>* product) {
-  const auto multiply_where = [&](const auto& is_in) HWY_ATTR {
-    for_all_lanes(run.first, run.end, family,
-                  [&](const auto& lanes) HWY_ATTR { lanes.multiply(v, is_in, product); });
+HWY_INLINE void for_batches(const DashpotRun& run, const DashpotFamily<Real>& family, Work&& work) {
+  const auto of_grid = [&](auto curvatures) HWY_ATTR {
+    for (std::size_t batch = run.first; batch < run.end; ++batch) {
+      if (family.in_rows[batch] != 0)
+        work(curvatures, Constant<Reading::rows>(), batch);
+      else
+        work(curvatures, Constant<Reading::anywhere>(), batch);
+    }
   };
-  if (run.inside)
-    multiply_where([](std::uint32_t) { return true; });
-  else
-    multiply_where([&](std::uint32_t place) { return place >= 4 * first && place < 4 * end; });
+  if (!family.of_triangles) {
+    if (family.curvatures == 2) return of_grid(Constant<std::size_t(2)>());
+    return of_grid(Constant<std::size_t(1)>());
+  }
+  for (std::size_t batch = run.first; batch < run.end; ++batch)
+    work(Constant<std::size_t(3)>(), Constant<Reading::triangles>(), batch);
+}
+
+/// The first number of what a family reads or gives to.
+template <class Numbers, class Real>
+HWY_INLINE Numbers* numbers_of(const DashpotFamily<Real>& family, Numbers* of_model) {
+  return of_model + (family.of_triangles ? 0 : 4 * family.first);
+}
+
+template <class Real>
+HWY_ATTR void aim(const DashpotRun& run, const Real* x, DashpotFamily<Real>& family) {
+  x = numbers_of(family, x);
+  for_batches(run, family, [&](auto curvatures, auto how, std::size_t batch) HWY_ATTR {
+    for_lanes<curvatures(), how()>(batch, family,
+                                   [&](const auto& lanes) HWY_ATTR { lanes.aim(x); });
+  });
+}
+
+template <class Real>
+HWY_ATTR void multiply(const DashpotRun& run, const Real* v, std::size_t first, std::size_t end,
+                       DashpotFamily<Real>& family, Real* product) {
+  v = numbers_of(family, v);
+  product = numbers_of(family, product);
+  for_batches(run, family, [&](auto curvatures, auto how, std::size_t batch) HWY_ATTR {
+    constexpr Reading kHow = how();
+    BatchForces<Real, kHow == Reading::triangles> forces;
+    for_lanes<curvatures(), kHow>(batch, family,
+                                  [&](const auto& lanes) HWY_ATTR { lanes.multiply(v, forces); });
+    if (run.inside)
+      forces.template give<kHow == Reading::rows>(
+          family, batch, [](std::size_t) { return true; }, product);
+    else
+      forces.template give<false>(
+          family, batch, [&](std::size_t i) { return i >= first && i < end; }, product);
+  });
+}
+
+/// Calls body(d, n) for whole vectors and then, with one lane, for the remaining numbers.
+template <class Real, class Body>
+HWY_INLINE void for_numbers(const NumberRange& range, Body&& body) {
+  const hn::ScalableTag<Real> wide;
+  const hn::CappedTag<Real, 1> single;
+  std::size_t n = range.first;
+  for (; n + hn::Lanes(wide) <= range.end; n += hn::Lanes(wide)) body(wide, n);
+  for (; n < range.end; ++n) body(single, n);
+}
+
+template <class Real>
+HWY_ATTR void open_stages(const NumberRange& range, Real by_start, const StageNumbers<Real>& of) {
+  for_numbers<Real>(range, [&](auto d, std::size_t n) HWY_ATTR {
+    const auto now = hn::Mul(hn::LoadU(d, of.start + n), hn::Set(d, by_start));
+    hn::StoreU(now, d, of.now + n);
+    hn::StoreU(hn::Mul(now, hn::LoadU(d, of.inverse_mass + n)), d, of.next_change + n);
+  });
+}
+
+template <class Real>
+HWY_ATTR void advance_stage(const NumberRange& range, const StageFactors<Real>& by,
+                            const StageNumbers<Real>& of) {
+  for_numbers<Real>(range, [&](auto d, std::size_t n) HWY_ATTR {
+    auto next = hn::Mul(hn::LoadU(d, of.now + n), hn::Set(d, by.now));
+    next = hn::Add(next, hn::Mul(hn::LoadU(d, of.before + n), hn::Set(d, by.before)));
+    next = hn::Add(next, hn::Mul(hn::LoadU(d, of.product + n), hn::Set(d, by.product)));
+    next = hn::Add(next, hn::Mul(hn::LoadU(d, of.start + n), hn::Set(d, by.start)));
+    hn::StoreU(next, d, of.before + n);
+    hn::StoreU(hn::Zero(d), d, of.product + n);
+    hn::StoreU(hn::Mul(next, hn::LoadU(d, of.inverse_mass + n)), d, of.next_change + n);
+  });
 }
 
 WEFT_KERNEL(aim);
 WEFT_KERNEL(multiply);
+WEFT_KERNEL(open_stages);
+WEFT_KERNEL(advance_stage);
 
 }  // namespace HWY_NAMESPACE
 }  // namespace weft

@@ -19,21 +19,37 @@ namespace weft {
 
 WEFT_EXPORT_KERNEL(aim);
 WEFT_EXPORT_KERNEL(multiply);
+WEFT_EXPORT_KERNEL(open_stages);
+WEFT_EXPORT_KERNEL(advance_stage);
 
 template <class Real>
-void aim_dashpots(const DashpotRun& run, const Quad<Real>* x, DashpotFamily<Real>& family) {
+void aim_dashpots(const DashpotRun& run, const Real* x, DashpotFamily<Real>& family) {
   assert(run.first <= run.end && run.end <= family.batches);
   WEFT_RUN(aim, Real)(run, x, family);
 }
 
 template <class Real>
-void multiply_dashpots(const DashpotRun& run, const Quad<Real>* v, std::size_t first,
-                       std::size_t end, DashpotFamily<Real>& family, Quad<Real>* product) {
+void multiply_dashpots(const DashpotRun& run, const Real* v, std::size_t first, std::size_t end,
+                       DashpotFamily<Real>& family, Real* product) {
   assert(run.first <= run.end && run.end <= family.batches && first <= end);
   WEFT_RUN(multiply, Real)(run, v, first, end, family, product);
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(aim_dashpots, multiply_dashpots)
+template <class Real>
+void open_dashpot_stages(const NumberRange& range, Real by_start, const StageNumbers<Real>& of) {
+  assert(range.first <= range.end);
+  WEFT_RUN(open_stages, Real)(range, by_start, of);
+}
+
+template <class Real>
+void advance_dashpot_stage(const NumberRange& range, const StageFactors<Real>& by,
+                           const StageNumbers<Real>& of) {
+  assert(range.first <= range.end);
+  WEFT_RUN(advance_stage, Real)(range, by, of);
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(aim_dashpots, multiply_dashpots, open_dashpot_stages,
+                           advance_dashpot_stage)
 
 }  // namespace weft
 #endif
