@@ -173,7 +173,8 @@ double next_opening(double resistance, bool layered, double seconds, double thic
 
 /// Jaws press layers on other objects with what their gripper does, in equal shares.
 /// @param pinch  of the gripper
-void press_layers(const Pinch& pinch, const Gripper& gripper, ColliderStates& colliders) {
+void press_layers(const Pinch& pinch, const Gripper& gripper, double seconds,
+                  ColliderStates& colliders) {
   const Press& press = gripper.middle.press;
   int pressing = 0;
   for (const std::size_t k : gripper.jaw) {
@@ -184,8 +185,12 @@ void press_layers(const Pinch& pinch, const Gripper& gripper, ColliderStates& co
     ColliderState& jaw = colliders[k];
     jaw.press = {};
     if (press.acts() && jaw.stands)
-      jaw.press = {press.direction, press.hold / pressing, press.squeeze / pressing,
-                   jaw.pinch.other, pressing};
+      jaw.press = {press.direction,
+                   press.hold / pressing,
+                   press.squeeze / pressing,
+                   jaw.pinch.other,
+                   pressing,
+                   mean_pushes(jaw.pinch, seconds)};
   }
 }
 
@@ -300,7 +305,7 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
     const bool was = colliders[gripper.jaw[0]].layered;
     const bool layered = grips_layers(gripper, resistance, was);
     const double opening = next_opening(resistance, layered, seconds, thickest, gripper);
-    press_layers(pinch, gripper, colliders);
+    press_layers(pinch, gripper, seconds, colliders);
     for (std::size_t k = 0; k < 2; ++k) {
       ColliderState& jaw = colliders[gripper.jaw[k]];
       jaw.mate = static_cast<Index>(gripper.jaw[1 - k]);

@@ -36,6 +36,7 @@ void feed_plan(XXH64_state_t& hash, const ColliderState& state) {
     feed(hash, state.pinch.direction.data(), 3);
     feed(hash, &state.pinch.lack, 1);
     feed(hash, &state.pinch.other, 1);
+    feed(hash, state.pinch.pushes.data(), 2);
     feed(hash, &state.press.other, 1);
     feed(hash, &state.impulse, 1);  // which is left of its force
   }

@@ -104,6 +104,39 @@ std::array<Vec3d, 2> mean_forces(World<float>& world, int ticks) {
   return mean;
 }
 
+/// Normal force on the cloth and friction of all contacts with an object, mean over some ticks [N].
+struct Rubbed {
+  double pressed = 0;
+  double friction = 0;  ///< sum of the sizes
+};
+
+/// Adds the contacts of the last tick to those of the ground and the object.
+void add_contacts(const World<float>& world, int ticks, std::array<Rubbed, 2>& mean) {
+  for (const ContactPoint& contact : world.reactions()->contacts) {
+    Rubbed& of = mean[static_cast<std::size_t>(contact.collider)];
+    of.pressed += contact.normal_force / ticks;
+    of.friction += contact.friction.norm() / ticks;
+  }
+}
+
+/// Takes the sheet's border at x = 0.1 with hands in a row.
+void hold_border(World<float>& world) {
+  const ClothModel<float>& model = world.model();
+  for (std::size_t t = 0; t < model.triangles.size(); ++t) {
+    Vec3d middle = Vec3d::Zero();
+    for (const Index i : model.triangles[t])
+      middle += world.state().x[static_cast<std::size_t>(i)].cast<double>() / 3;
+    if (middle[0] < 0.085) continue;
+    GrabDef hand;
+    hand.triangle = static_cast<Index>(t);
+    hand.radius = 0.02;
+    hand.stiffness = 50;
+    hand.target = middle;
+    world.grab(hand);
+  }
+  REQUIRE(world.grabs().list.size() >= 4);
+}
+
 }  // namespace
 
 TEST_CASE("a finger that comes fast presses with its force, and shoves the cloth nowhere") {
@@ -238,6 +271,36 @@ TEST_CASE("a layer that is pressed is held at 0.9 of what friction on both sides
         CHECK(std::abs(moved) < 3e-3);  // which it is stretched by
       else
         CHECK(moved > 0.02);
+    }
+  }
+}
+
+TEST_CASE("each side of a pressed layer rubs with no more than mu times its own normal force") {
+  for (const double slope : {1.7, 2.7}) {  // hands that lift the layer press it on the object
+    for (const double force : {3.0, 5.0}) {
+      Pressed c;
+      c.particles = 15;
+      c.max_force = force;
+      WorldDef def = pressed_sheet(c);
+      def.colliders[1].shape = SphereDef{Vec3d(0.003, 0.1, 0.002), 0.05};
+      World<float> world(def);
+      press(world);
+      hold_border(world);
+      constexpr int kTicks = 60;
+      const Vec3d step = Vec3d(1, slope, 0).normalized() * (0.03 / kTicks);
+      for (int second = 0; second < 4; ++second) {
+        std::array<Rubbed, 2> mean;
+        for (int t = 0; t < kTicks; ++t) {
+          for (const Grab<float>& grab : world.grabs().list)
+            world.move_grab(grab.id, grab.target.cast<double>() + step);
+          world.step();
+          add_contacts(world, kTicks, mean);
+        }
+        INFO(slope << " upwards, " << force << " N, second " << second);
+        const auto& [ground, object] = mean;
+        if (second == 3) CHECK(ground.pressed < 0.9 * object.pressed);
+        for (const Rubbed& side : mean) CHECK(side.friction < 1.03 * c.friction * side.pressed);
+      }
     }
   }
 }

@@ -109,7 +109,10 @@ Vec3d step_along_pinch(const MotionGoal& goal, const ColliderPair& own, double s
   const bool presses = stands && deep && resistance < goal.press;
   const double advance = presses ? advance_against(own, into, most, states, object) : 0;
   object.press = {};
-  if (presses) object.press = {pinch, goal.press, goal.press - resistance, object.pinch.other};
+  if (presses) {
+    object.press = {pinch, goal.press, goal.press - resistance, object.pinch.other};
+    object.press.pushes = mean_pushes(object.pinch, seconds);
+  }
   const double back = std::clamp(object.pinch.lack / 2, -most, most);
   return stands ? Vec3d(step - pinch * (into - advance + std::max(back, -into))) : step;
 }

@@ -109,6 +109,11 @@ void clear_impulses(ColliderState& state) {
     sum->setZero();
 }
 
+std::array<double, 2> mean_pushes(const Pinch& pinch, double seconds) {
+  assert(seconds > 0);
+  return {pinch.pushes[0] / seconds, pinch.pushes[1] / seconds};
+}
+
 void take_back_motion(ColliderStates& states) {
   for (ColliderState& state : states) {
     state.pose = state.start;

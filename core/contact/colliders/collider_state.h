@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,16 +17,22 @@ struct Pinch {
   double lack = 0;                  ///< most that the layer lacks of its thickness [m]
   Index other = kNone;              ///< the other collider
   bool braces = false;              ///< another one pinches cloth against it
+  /// What the layer's rows push with in a tick in which the collider presses it, on its own side
+  /// and on the other one; not what it is pressed with besides [N s].
+  std::array<double, 2> pushes = {0, 0};
 };
 
 /// How a jaw of a gripper presses cloth on the other jaw in a tick, or an object or a jaw a single
 /// layer on another object.
 struct Press {
   Vec3d direction = Vec3d::Zero();  ///< unit; zero: it does not press
-  double hold = 0;                  ///< force whose friction holds what it presses [N]
+  double hold = 0;                  ///< force with which it presses in all [N]
   double squeeze = 0;               ///< its part that the cloth does not resist yet [N]
   Index other = kNone;              ///< the object that it presses on; kNone: the other jaw
   int parts = 1;                    ///< jaws of a gripper that press so, each with these forces
+  /// What the rows of a pressed layer push with besides the squeeze, on the presser's side and on
+  /// the other one, mean of the last tick [N].
+  std::array<double, 2> pushes = {0, 0};
 
   bool acts() const { return !direction.isZero(0); }
 };
@@ -112,6 +119,9 @@ ColliderStates initial_states(const std::vector<ColliderDef>& colliders);
 
 /// Forgets what the cloth has been given in the tick.
 void clear_impulses(ColliderState& state);
+
+/// Mean forces of the rows of what is pinched, on both sides [N].
+std::array<double, 2> mean_pushes(const Pinch& pinch, double seconds);
 
 /// Returns to the start of the running tick.
 void take_back_motion(ColliderStates& states);

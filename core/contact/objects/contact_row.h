@@ -99,7 +99,9 @@ struct MovingRow {
   double own_offset = 0;             ///< [m]
   Real mobility = 0;                 ///< velocity that an impulse gives the row's point [1/kg]
   Vec3<Real> surface = Vec3<Real>::Zero();  ///< velocity of the object there [m/s]
-  bool layered = false;  ///< in a jaw that layers resist: their pushes are part of its grip
+  bool counted = false;   ///< its pushes are part of the force that its grip is shared from
+  Index presser = kNone;  ///< the object that presses a layer by it
+  std::size_t side = 0;   ///< of that layer: 0 next to that object, 1 behind it
   Real grip = 0;  ///< friction that the jaw, and what pushes besides, allow in this step [m/s]
   Vec3<Real> rubbed = Vec3<Real>::Zero();  ///< the part of it that acts [m/s]
 };

@@ -19,6 +19,8 @@ void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Ve
   state.pushed += along * along.dot(impulse);
   state.angular_impulse += (point.template cast<double>() - state.pose.position).cross(impulse);
   motion.work += impulse.dot(row.surface.template cast<double>());
+  if (row.presser != kNone)
+    (*motion.colliders)[at_index(row.presser)].pinch.pushes[row.side] += along.dot(impulse);
 }
 
 template <class Real>

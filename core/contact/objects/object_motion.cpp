@@ -59,7 +59,7 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
   motion.colliders = colliders;
   motion.work = 0;
   const bool moved = std::exchange(motion.any_tracked, false);
-  motion.any_press = false;
+  const bool pressed = std::exchange(motion.any_press, false);
   motion.surface_speed = 0;
   if (!colliders) {
     for (ColliderFrame<Real>& frame : shapes.frames) frame.tracked = false;
@@ -84,6 +84,8 @@ bool begin_motion(double tick_seconds, ColliderStates* colliders, ObjectShapes<R
     const double speed = state.twist.linear.norm() + (turn > 0 ? turn * frame.radius : 0);
     motion.surface_speed = std::max(motion.surface_speed, static_cast<Real>(speed));
   }
+  // Rows would keep the grip of what presses no longer.
+  rows_go |= pressed && !motion.any_press;
   return rows_go || (motion.any_tracked && !moved);
 }
 

@@ -33,7 +33,7 @@ void list_gripped(std::size_t k, const Vec3d& press, const Vec3Array<Real>& x,
     if (gap < row.thickness * Real(kBeforeJaw))
       jaw.facing = std::max(jaw.facing, static_cast<double>(row.thickness));
     if (!(gap < row.thickness * (1 + slack))) continue;
-    moving.layered = jaw.layered;
+    moving.counted = jaw.layered;
     gripped.push_back({m, at_index(jaw.mate)});
   }
 }
@@ -78,18 +78,17 @@ Real weigh(const std::vector<GrippedRow>& gripped, ObjectRows<Real>& rows) {
   return mass;
 }
 
-/// Two objects that press a layer against each other do so with the force of the weaker one.
+/// What an object presses a layer with besides what this resists already. Two that press it against
+/// each other do so with the force of the weaker one.
 /// @param k  number of one of them
-Press press_of(std::size_t k, const ColliderStates& colliders) {
-  Press press = colliders[k].press;
+double squeeze_of(std::size_t k, const ColliderStates& colliders) {
+  const Press& press = colliders[k].press;
   assert(colliders[k].pinches());
   const Press& other = colliders[at_index(colliders[k].pinch.other)].press;
   const bool opposed = other.other == static_cast<Index>(k) || other.other == colliders[k].mate;
-  if (other.other == kNone || !opposed) return press;
+  if (other.other == kNone || !opposed) return press.squeeze;
   const double parts = other.parts / static_cast<double>(press.parts);
-  press.hold = std::min(press.hold, other.hold * parts);
-  press.squeeze = std::min(press.squeeze, other.squeeze * parts);
-  return press;
+  return std::min(press.squeeze, other.squeeze * parts);
 }
 
 /// Shares what an object presses with among the listed rows, all of one object.
@@ -156,6 +155,29 @@ bool tell_squeeze(const Press& press, Real dt, const std::vector<GrippedRow>& gr
   return true;
 }
 
+/// Shares what object `k` presses a layer with among the rows on one side of that. Each side has
+/// the friction of its own normal force: what else pulls or presses the layer, as hands that lift
+/// it and its weight, is borne by one of both. What rows push with for that comes in strokes, and
+/// what they allow is shared as the squeeze is, with their mean of the last tick.
+/// @param side  0: next to the object, 1: behind the layer
+/// @return the friction that the rows allow in this step [N s]
+template <class Real>
+Real share_side(std::size_t k, std::size_t side, Real dt, const std::vector<GrippedRow>& gripped,
+                ObjectSolve<Real>& solve) {
+  const ColliderStates& colliders = *solve.motion.colliders;
+  Press press = colliders[k].press;
+  press.squeeze = squeeze_of(k, colliders);
+  press.hold = press.squeeze + press.pushes[side];
+  if (side == 1) press.direction = -press.direction;
+  for (const GrippedRow& g : gripped) {
+    MovingRow<Real>& moving = solve.rows.moving[g.moving];
+    moving.counted = true;
+    moving.presser = static_cast<Index>(k);
+    moving.side = side;
+  }
+  return share(press, dt, gripped, true, solve);
+}
+
 /// Lets rows of one side rub from the start, in the direction in which their object slips past the
 /// one on the other side.
 /// @param part  of what each may, 0..1
@@ -191,10 +213,8 @@ void share_press(std::size_t k, const ObjectShapes<Real>& shapes, Real dt,
   std::vector<GrippedRow>&front = solve.response.gripped, &back = solve.response.braced;
   list_pinched(k, solve.pinches.fronts, solve.rows, colliders, front);
   list_pinched(k, solve.pinches.backs, solve.rows, colliders, back);
-  Press press = press_of(k, colliders);
-  const Real before = share(press, dt, front, true, solve);
-  press.direction = -press.direction;
-  const Real behind = share(press, dt, back, true, solve);
+  const Real before = share_side(k, 0, dt, front, solve);
+  const Real behind = share_side(k, 1, dt, back, solve);
   if (!(before > 0 && behind > 0)) return;
   const Real both = std::min(before, behind);
   begin_slip(front, shapes, std::min(both / before, Real(1)), solve);
@@ -240,7 +260,8 @@ void share_hold(ObjectSolve<Real>& solve, const ObjectShapes<Real>& shapes, Real
   assert(solve.motion.colliders && dt > 0);
   ColliderStates& colliders = *solve.motion.colliders;
   for (MovingRow<Real>& moving : solve.rows.moving) {
-    moving.layered = false;
+    moving.counted = false;
+    moving.presser = kNone;
     moving.grip = 0;
     moving.rubbed.setZero();
   }

@@ -95,7 +95,7 @@ void note_impact(ObjectSolve<Real>& solve, std::size_t r) {
 template <class Real>
 Vec3<Real> rub_in_jaw(const Vec3<Real>& slip, Real allowed, MovingRow<Real>& moving) {
   assert(moving.grip > 0 && allowed >= 0);
-  if (!moving.layered) moving.grip += allowed;
+  if (!moving.counted) moving.grip += allowed;
   Vec3<Real> rubbed = moving.rubbed - slip;
   if (const Real size = rubbed.norm(); size > moving.grip) rubbed *= moving.grip / size;
   const Vec3<Real> change = rubbed - moving.rubbed;
@@ -123,7 +123,7 @@ Vec3<Real> respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v,
     const Real allowed = row.friction * pressed;
     if (moving && moving->grip > 0) {
       change += rub_in_jaw(slip, allowed, *moving);
-    } else if (!moving || !moving->layered) {
+    } else if (!moving || !moving->counted) {
       const Real speed = slip.norm();
       change -= speed > allowed ? (slip * (allowed / speed)).eval() : slip;
     }
