@@ -145,7 +145,7 @@ void for_live(Grabs<Real>& grabs, const ClothState<Real>& state, Visit&& visit) 
 
 /// Limits velocities to kFastestHeld, and subtracts the lost impulse from the force.
 template <class Real>
-void limit_speeds(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
+void limit_speeds(Grab<Real>& grab, Real seconds, Real force_ratio, ClothState<Real>& state) {
   constexpr Real kMost = static_cast<Real>(kFastestHeld);
   for (std::size_t n = 0; n < grab.particles.size(); ++n) {
     const auto i = static_cast<std::size_t>(grab.particles[n]);
@@ -155,9 +155,9 @@ void limit_speeds(Grab<Real>& grab, Real seconds, ClothState<Real>& state) {
     if (!(speed2 > kMost * kMost) || inverse_mass == 0) continue;
     const Vec3<Real> kept = v * (kMost / std::sqrt(speed2));
     const Vec3<Real> lost = (v - kept) / inverse_mass;
-    grab.impulse[n] -= lost;
+    grab.impulse[n] -= lost * force_ratio;
     grab.force -= lost / seconds;
-    grab.given -= lost.template cast<double>();
+    grab.given -= (lost * force_ratio).template cast<double>();
     v = kept;
   }
 }
@@ -269,8 +269,8 @@ Vec3<Real> held_point(const Grab<Real>& grab, const Vec3Array<Real>& x) {
 }
 
 template <class Real>
-void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& state,
-                  Grabs<Real>& grabs) {
+void pull_by_hand(const HandStep<Real>& step, Real seconds, Real force_ratio,
+                  ClothState<Real>& state, Grabs<Real>& grabs) {
   for_live(grabs, state, [&](const Grab<Real>& grab) { pull(grab, grab.force, seconds, state); });
   for_live(grabs, state, [&](Grab<Real>& grab) {
     const Real own = mobility(grab, state);
@@ -278,9 +278,10 @@ void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& st
     const Vec3<Real> force = hand_force(grab, step, seconds, state.x, others, own);
     pull<Real>(grab, force - grab.force, seconds, state);
     grab.force = force;
-    note_impulses(force, seconds, grab);
+    note_impulses(force, seconds * force_ratio, grab);
   });
-  for_live(grabs, state, [&](Grab<Real>& grab) { limit_speeds(grab, seconds, state); });
+  for_live(grabs, state,
+           [&](Grab<Real>& grab) { limit_speeds(grab, seconds, force_ratio, state); });
 }
 
 template <class Real>
@@ -349,24 +350,24 @@ double work_of_hands(const Vec3Array<Real>& v, Grabs<Real>& grabs) {
   return work;
 }
 
-#define WEFT_INSTANTIATE(Real)                                                               \
-  template GrabId add_grab(const ClothModel<Real>&, const ClothState<Real>&, const GrabDef&, \
-                           Grabs<Real>&);                                                    \
-  template void fit_hand(const ClothModel<Real>&, Grab<Real>&);                              \
-  template bool move_grab(GrabId, const Vec3d&, Grabs<Real>&);                               \
-  template bool remove_grab(GrabId, Grabs<Real>&);                                           \
-  template std::optional<Vec3<Real>> fire_sling(GrabId, int, const ClothState<Real>&,        \
-                                                Grabs<Real>&);                               \
-  template void lead_hands(double, const Vec3Array<Real>&, Grabs<Real>&);                    \
-  template void finish_tick(double, Grabs<Real>&);                                           \
-  template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                 \
-  template void pull_by_hand(const HandStep<Real>&, Real, ClothState<Real>&, Grabs<Real>&);  \
-  template void add_hand_forces(const HandStep<Real>&, Real, const Vec3<Real>&,              \
-                                const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);    \
-  template void note_resistance(const Vec3Array<Real>&, Grabs<Real>&);                       \
-  template void add_sling_forces(const Grabs<Real>&, Vec3Array<Real>&);                      \
-  template void begin_tick(Grabs<Real>&);                                                    \
-  template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                        \
+#define WEFT_INSTANTIATE(Real)                                                                    \
+  template GrabId add_grab(const ClothModel<Real>&, const ClothState<Real>&, const GrabDef&,      \
+                           Grabs<Real>&);                                                         \
+  template void fit_hand(const ClothModel<Real>&, Grab<Real>&);                                   \
+  template bool move_grab(GrabId, const Vec3d&, Grabs<Real>&);                                    \
+  template bool remove_grab(GrabId, Grabs<Real>&);                                                \
+  template std::optional<Vec3<Real>> fire_sling(GrabId, int, const ClothState<Real>&,             \
+                                                Grabs<Real>&);                                    \
+  template void lead_hands(double, const Vec3Array<Real>&, Grabs<Real>&);                         \
+  template void finish_tick(double, Grabs<Real>&);                                                \
+  template Vec3<Real> held_point(const Grab<Real>&, const Vec3Array<Real>&);                      \
+  template void pull_by_hand(const HandStep<Real>&, Real, Real, ClothState<Real>&, Grabs<Real>&); \
+  template void add_hand_forces(const HandStep<Real>&, Real, const Vec3<Real>&,                   \
+                                const ClothState<Real>&, Grabs<Real>&, Vec3Array<Real>&);         \
+  template void note_resistance(const Vec3Array<Real>&, Grabs<Real>&);                            \
+  template void add_sling_forces(const Grabs<Real>&, Vec3Array<Real>&);                           \
+  template void begin_tick(Grabs<Real>&);                                                         \
+  template void see_velocities(const Vec3Array<Real>&, Grabs<Real>&);                             \
   template double work_of_hands(const Vec3Array<Real>&, Grabs<Real>&);
 WEFT_INSTANTIATE(float)
 WEFT_INSTANTIATE(double)

@@ -144,10 +144,11 @@ struct HandStep {
 /// Call after all other forces have changed the velocities: applies each live hand's force clamp(k
 /// (target - p) - c dp/dt), shared by weight, with p and the target at the end of the step that
 /// this velocity produces. No velocity exceeds kFastestHeld.
-/// @param seconds  duration of the force
+/// @param seconds      duration of the force, as far as the velocities get it
+/// @param force_ratio  its true duration over that [1]
 template <class Real>
-void pull_by_hand(const HandStep<Real>& step, Real seconds, ClothState<Real>& state,
-                  Grabs<Real>& grabs);
+void pull_by_hand(const HandStep<Real>& step, Real seconds, Real force_ratio,
+                  ClothState<Real>& state, Grabs<Real>& grabs);
 
 /// The same force for solvers that take forces: adds it to `force`, which contains all others. What
 /// constraints will make of the velocity is taken to be what they made of the last one; without

@@ -16,7 +16,7 @@ GripperLoad load_of(const Gripper& gripper, const ColliderStates& colliders, dou
     const ColliderState& jaw = colliders[k];
     const Vec3d lever = jaw.pose.position - gripper.pose.position;
     load.force += jaw.force;
-    load.torque -= (jaw.angular_impulse + lever.cross(jaw.impulse)) / seconds;
+    load.torque -= (jaw.told.angular + lever.cross(jaw.told.impulse)) / seconds;
   }
   return load;
 }

@@ -147,8 +147,9 @@ void PinDrive<Real>::begin_tick(double tick_seconds, const ClothModel<Real>& mod
 }
 
 template <class Real>
-void PinDrive<Real>::before_drift(ClothState<Real>& state, Real dt) {
+void PinDrive<Real>::before_drift(ClothState<Real>& state, Real dt, double force_ratio) {
   assert(dt > 0);
+  force_ratio_ = force_ratio;
   // The first kick of a tick is half a kick, and limits the pins' impulse likewise.
   const bool first = elapsed_ == 0;
   elapsed_ += static_cast<double>(dt);
@@ -158,6 +159,7 @@ void PinDrive<Real>::before_drift(ClothState<Real>& state, Real dt) {
 template <class Real>
 void PinDrive<Real>::settle(ClothState<Real>& state, Real dt) {
   assert(dt > 0);
+  force_ratio_ = 1;
   elapsed_ += static_cast<double>(dt);
   drive(state, dt, static_cast<double>(dt) / 2);
 }
@@ -214,10 +216,11 @@ void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& stat
     state.v[i] = after.template cast<Real>();
     // Forces that the pin merely cancels do no work: only the drift before and after counts, not
     // the kick in between.
-    work_ += static_cast<double>(model_->mass[i]) * given.dot(path.velocity[n] + after) / 2;
+    work_ += static_cast<double>(model_->mass[i]) * force_ratio_ *
+             given.dot(path.velocity[n] + after) / 2;
     path.velocity[n] = after;
   }
-  path.impulse += sum * whole;
+  path.impulse += sum * (whole * force_ratio_);
 }
 
 template <class Real>

@@ -43,7 +43,8 @@ class PinDrive {
   void begin_tick(double tick_seconds, const ClothModel<Real>& model, Pins& pins);
 
   /// Call between the kick and the drift of `dt` [s].
-  void before_drift(ClothState<Real>& state, Real dt);
+  /// @param force_ratio  see Collision::before_drift
+  void before_drift(ClothState<Real>& state, Real dt, double force_ratio = 1);
 
   /// Call at the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt);
@@ -62,6 +63,7 @@ class PinDrive {
   const ClothModel<Real>* model_ = nullptr;
   Pins* pins_ = nullptr;
   double tick_seconds_ = 0, elapsed_ = 0;  ///< of the tick [s]
+  double force_ratio_ = 1;
   double work_ = 0;
 };
 

@@ -41,14 +41,16 @@ struct Collision {
     if (objects) objects->note_motion(state);
   }
   /// Call between the kick and the drift of `dt` [s]: makes the velocities admissible.
-  void before_drift(ClothState<Real>& state, Real dt, Profile& profile) const {
-    assert(dt > 0);
+  /// @param force_ratio  impulse of a force that gives the velocities an impulse of 1 here [1]
+  void before_drift(ClothState<Real>& state, Real dt, Profile& profile,
+                    Real force_ratio = 1) const {
+    assert(dt > 0 && force_ratio >= 1);
     assert(!(objects && seed) && !(guard && seed) && "one model of contact");
-    if (pins) pins->before_drift(state, dt);
+    if (pins) pins->before_drift(state, dt, static_cast<double>(force_ratio));
     if (meter) meter->driven(state.v);
     const StageTimer timer(profile, Stage::contact, 0);
-    if (objects) objects->note_kicked(state);
-    if (guard) guard->solve(state, dt, profile);
+    if (objects) objects->note_kicked(state, static_cast<double>(force_ratio));
+    if (guard) guard->solve(state, dt, profile, force_ratio);
     if (objects)
       objects->resolve(state, dt, profile, guard);
     else if (guard)
@@ -78,7 +80,7 @@ struct Collision {
     if (seed) seed->collide(state, dt, profile);
     return changed || seed;
   }
-  /// Call at the end of a tick, after the closing kick.
+  /// Call at the end of a tick, after the closing kick, all of whose forces the velocities have.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     assert(dt > 0);
     if (pins) pins->settle(state, dt);

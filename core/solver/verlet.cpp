@@ -248,7 +248,7 @@ void pull(Tick<Real>& tick, const Kick<Real>& k, int s, const SubstepRange& subs
   const StageTimer timer(tick.profile, Stage::attachments, tick.grabs.list.size());
   const auto count = static_cast<Real>(substeps.all);
   pull_by_hand({static_cast<Real>(substeps.first + s) / count, 1 / (tick.dt * count), tick.dt},
-               k.scaled_dt, tick.state, tick.grabs);
+               k.scaled_dt, k.force_ratio, tick.state, tick.grabs);
   if (tick.collision.meter) tick.collision.meter->pulled(tick.state.v);
   if (tick.collision.held) tick.collision.held->pull(tick.grabs, k.seconds);
 }
@@ -287,7 +287,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, const Subste
     pull(tick, k, s, substeps);
     if (!collision.empty()) blow_up = find_blow_up(tick.model, state, tick.dt, tick.work.executor);
     if (blow_up) return work;
-    collision.before_drift(state, tick.dt, tick.profile);
+    collision.before_drift(state, tick.dt, tick.profile, k.force_ratio);
     work += drift(tick);
     work += work_of_hands(state.v, tick.grabs);
     if (collision.after_drift(state, tick.dt, tick.profile))

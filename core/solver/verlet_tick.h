@@ -13,6 +13,9 @@ template <class Real>
 struct Kick {
   Real keep, scaled_dt;
   double seconds;  ///< for which the forces act [s]
+  /// What a force gives in that time over what is left of it in the velocity, `seconds` over
+  /// `scaled_dt` [1]: drag has taken the rest. So an impulse after the kick is that of a force.
+  Real force_ratio;
 };
 
 /// The three kicks of a tick. Opening and closing together make one full kick.
@@ -23,9 +26,11 @@ struct Kicks {
   Kicks(double dt, double damping) {
     assert(dt > 0 && damping >= 0);
     const double lost = 0.5 * damping * dt;
-    opening = {static_cast<Real>(1 / (1 + lost)), static_cast<Real>(0.5 * dt / (1 + lost)), dt / 2};
-    full = {static_cast<Real>((1 - lost) / (1 + lost)), static_cast<Real>(dt / (1 + lost)), dt};
-    closing = {static_cast<Real>(1 - lost), static_cast<Real>(0.5 * dt), dt / 2};
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    const Real ratio = real(1 + lost);
+    opening = {real(1 / (1 + lost)), real(0.5 * dt / (1 + lost)), dt / 2, ratio};
+    full = {real((1 - lost) / (1 + lost)), real(dt / (1 + lost)), dt, ratio};
+    closing = {real(1 - lost), real(0.5 * dt), dt / 2, 1};
   }
 };
 

@@ -15,6 +15,11 @@ Vec3d wide(const Vec3<Real>& v) {
   return v.template cast<double>();
 }
 
+/// What a force gives over what the velocity gets of it.
+double force_ratio(const MeteredKick& kick) {
+  return kick.seconds / kick.scaled_seconds;
+}
+
 /// Velocity of an object's point in the present substep [m/s].
 template <class Real>
 Vec3d surface_velocity(const ColliderFrame<Real>& frame, const Vec3d& point) {
@@ -86,19 +91,21 @@ void WorkMeter<Real>::measure_outer_forces() {
   }
 }
 
-/// Drag, hands, pins and corrected positions. Drag is what is left of the kick's impulse without
-/// that of its forces, f = m (v' - keep v) / scaled_seconds, with the constants as they were
-/// rounded. A corrected position changes the potential energy by -f times the correction, of which
-/// the forces at either end of the drift have half.
+/// Drag, hands, pins and corrected positions. With r = seconds / scaled_seconds, with the constants
+/// as they were rounded, all forces on a particle are m (v' - keep v) / scaled_seconds: what hands,
+/// pins and contact give its velocity is r times as much of them, and drag has the rest of the
+/// change, m ((1 - r) v' - (1 - r keep) v). A corrected position changes the potential energy by -f
+/// times the correction, of which the forces at either end of the drift have half.
 template <class Real>
 void WorkMeter<Real>::measure_particle(std::size_t i, double mass, const ClothState<Real>& state,
                                        double drift) {
   EnergyFlows& flows = now_.flows;
   const Vec3d before = wide(v_[i]), kicked = wide(v_kicked_[i]), &mean = mean_[i];
-  const double ratio = kick_.seconds / kick_.scaled_seconds;
-  flows.drag -= mass * (kicked * (1 - ratio) - before * (1 - ratio * kick_.keep)).dot(mean);
-  flows.hands += mass * (wide(v_pulled_[i]) - kicked).dot(mean);
-  flows.pins += mass * (wide(v_driven_[i]) - wide(v_pulled_[i])).dot(mean);
+  const double ratio = force_ratio(kick_);
+  const Vec3d dragged = wide(state.v[i]) * (1 - ratio) - before * (1 - ratio * kick_.keep);
+  flows.drag -= mass * dragged.dot(mean);
+  flows.hands += mass * ratio * (wide(v_pulled_[i]) - kicked).dot(mean);
+  flows.pins += mass * ratio * (wide(v_driven_[i]) - wide(v_pulled_[i])).dot(mean);
   const Vec3d corrected = wide(state.x[i]) - wide(x_[i]) - wide(state.v[i]) * drift;
   Vec3d force = (kicked - before * kick_.keep) * (mass / kick_.scaled_seconds);
   if (forces_.external && !forces_.external->empty()) force -= wide((*forces_.external)[i]);
@@ -153,7 +160,7 @@ void WorkMeter<Real>::finish(const ClothModel<Real>& model, const ClothState<Rea
     measure_particle(i, mass, state, drift);
     work += mass * (wide(state.v[i]) - wide(v_driven_[i])).dot(mean_[i]);
   }
-  share_contact(work, state, objects, cloths);
+  share_contact(work * force_ratio(kick_), state, objects, cloths);
   for (Vec3d& mean : mean_) mean *= kick_.seconds;  // now displacements
   now_.flows.damping +=
       dashpot_loss(model, x_, forces_.seen ? *forces_.seen : v_, mean_, forces_.dashpots);

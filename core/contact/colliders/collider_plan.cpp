@@ -203,7 +203,7 @@ void finish_motion(const std::vector<ColliderDef>& colliders, double seconds,
   assert(seconds > 0);
   for (std::size_t k = 0; k < states.size(); ++k) {
     ColliderState& state = states[k];
-    state.force = -(state.impulse + state.besides) / seconds;
+    state.force = -(state.told.impulse + state.besides) / seconds;
     if (state.is_jaw() || state.wanted.is_zero()) continue;
     state.pace = next_paces(state, colliders[k].max_force, seconds);
   }

@@ -19,21 +19,14 @@ double surface_speed(const ColliderState& state) {
   return state.wanted.linear.norm() + (turn > 0 ? turn * state.radius : 0);
 }
 
-/// What a collider has given to the cloth.
-struct Resisted {
-  Vec3d impulse;  // [N s]
-  Vec3d angular;  // about its pivot [N m s]
-
-  /// The work of that in a motion, per second of it [W s].
-  double power(const Twist& motion) const {
-    return impulse.dot(motion.linear) + angular.dot(motion.angular);
-  }
-};
+/// The work of what was given in a motion, per second of it [W s].
+double power(const Given& given, const Twist& motion) {
+  return given.impulse.dot(motion.linear) + given.angular.dot(motion.angular);
+}
 
 /// What has been given since the last call.
-Resisted take_uncounted(ColliderState& state) {
-  const Resisted given{state.impulse - state.counted,
-                       state.angular_impulse - state.angular_counted};
+Given take_uncounted(ColliderState& state) {
+  const Given given{state.impulse - state.counted, state.angular_impulse - state.angular_counted};
   state.counted = state.impulse;
   state.angular_counted = state.angular_impulse;
   return given;
@@ -107,6 +100,7 @@ void clear_impulses(ColliderState& state) {
   for (Vec3d* sum : {&state.impulse, &state.pushed, &state.angular_impulse, &state.counted,
                      &state.angular_counted, &state.besides})
     sum->setZero();
+  state.told = {};
 }
 
 std::array<double, 2> mean_pushes(const Pinch& pinch, double seconds) {
@@ -126,15 +120,15 @@ void take_back_motion(ColliderStates& states) {
 }
 
 bool count_resistance(double seconds, ColliderState& state) {
-  const Resisted given = take_uncounted(state);
+  const Given given = take_uncounted(state);
   if (state.wanted.is_zero()) return false;
-  const double along = given.power(state.wanted) / surface_speed(state);
+  const double along = power(given, state.wanted) / surface_speed(state);
   const double resisted = std::max(along, resisted_push(given.impulse, state.wanted, state.pace));
   return add_overload(resisted, seconds, kImpactSeconds, state) && !state.pace.yields();
 }
 
 bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate) {
-  const Resisted given = take_uncounted(jaw), by_mate = take_uncounted(mate);
+  const Given given = take_uncounted(jaw), by_mate = take_uncounted(mate);
   const Vec3d axis = (mate.pose.position - jaw.pose.position).normalized();
   const Vec3d apart = (jaw.wanted.linear - mate.wanted.linear) / 2;
   const Vec3d closing = axis * axis.dot(apart);
@@ -145,7 +139,7 @@ bool count_resistance(double seconds, ColliderState& jaw, ColliderState& mate) {
       both.linear.norm() + (apart - closing).norm() + wanted.angular.norm() * jaw.radius;
   bool stands = false;
   if (speed > 0) {
-    const double along = (given.power(wanted) + by_mate.power(mates)) / speed;
+    const double along = (power(given, wanted) + power(by_mate, mates)) / speed;
     const Vec3d pushed = given.impulse + by_mate.impulse;
     const double resisted = std::max(along, resisted_push(pushed, both, jaw.pace));
     const double impact = jaw.grips() ? kGripImpactSeconds : kImpactSeconds;

@@ -50,6 +50,12 @@ struct Pace {
   bool yields() const { return into < 0 || along < 0; }
 };
 
+/// What a collider has given to the cloth.
+struct Given {
+  Vec3d impulse = Vec3d::Zero();  ///< [N s]
+  Vec3d angular = Vec3d::Zero();  ///< about its pivot [N m s]
+};
+
 /// Present state of a collider. Its motion is planned for a tick, with a constant twist, and
 /// executed per substep by contact, which may hold it back.
 struct ColliderState {
@@ -65,9 +71,10 @@ struct ColliderState {
   bool blocked = false;  ///< held back, because cloth could not yield
   bool forced = false;   ///< not held back in this tick
   bool voided = false;   ///< has moved on through cloth since the start: nothing is promised
-  Vec3d impulse = Vec3d::Zero();          ///< given to the cloth so far [N s]
+  Vec3d impulse = Vec3d::Zero();          ///< given to the cloth's velocities so far [N s]
   Vec3d pushed = Vec3d::Zero();           ///< its part along the normals of contacts [N s]
   Vec3d angular_impulse = Vec3d::Zero();  ///< about the pivot [N m s]
+  Given told;  ///< the same with what drag takes of forces: see Collision::before_drift
 
   // What it pinches, of the last substep.
   Pinch pinch;

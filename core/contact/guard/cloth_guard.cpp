@@ -131,10 +131,11 @@ void ClothGuard<Real>::let_rest(const std::vector<char>& asleep) {
 // ---- solve ----
 
 template <class Real>
-void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile) {
+void ClothGuard<Real>::solve(ClothState<Real>& state, Real dt, Profile& profile, Real force_ratio) {
   assert(phase_ == GuardPhase::between_steps && dt > 0);
   phase_ = GuardPhase::solved;
   note_settled();
+  log_.force_ratio = static_cast<double>(force_ratio);
   const Real kicked = std::exchange(settled_, false) ? dt / 2 : dt;
   calm_.calm = pairs_.active.empty() && open_pairs() == 0;
   const bool looks = calm_.calm || !making_.made || (making_.steps + 1) % kStepsBetweenLooks == 0;
@@ -302,7 +303,7 @@ void ClothGuard<Real>::certify(ClothState<Real>& state, Real dt, const std::func
   phase_ = GuardPhase::certified;
   const StageTimer timer(profile, Stage::regions, 0);
   ++step_.number;
-  if (log_.wanted) rows_.deals.note_pushes();
+  if (log_.wanted) rows_.deals.note_pushes(static_cast<Real>(log_.force_ratio));
   log_.begun = true;
   step_.is_free = false;
   step_.common = {};

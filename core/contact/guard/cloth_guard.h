@@ -69,7 +69,8 @@ class ClothGuard {
   void let_rest(const std::vector<char>& asleep);
 
   /// Before all other contact: the contact impulses of the last step again. `sweep` mends them.
-  void solve(ClothState<Real>& state, Real dt, Profile& profile);
+  /// @param force_ratio  see Collision::before_drift
+  void solve(ClothState<Real>& state, Real dt, Profile& profile, Real force_ratio = 1);
 
   /// A sweep over the rows, to be called in turn with those of other contact: what rests in layers
   /// on an object is held by both.
@@ -177,7 +178,7 @@ class ClothGuard {
   }
   /// Notes what was pushed when the last steps were settled, whose sweeps are over.
   void note_settled() {
-    if (log_.wanted && log_.begun && settled_) rows_.deals.note_pushes();
+    if (log_.wanted && log_.begun && settled_) rows_.deals.note_pushes(1);
   }
   void examine_rows(const ClothState<Real>& state, Real dt, Profile& profile);
   void start_rows(ClothState<Real>& state, Real dt, Real kicked, Profile& profile);

@@ -39,7 +39,7 @@ void log_meetings(const std::vector<StoppedPair<Real>>& pairs, GuardLog& log) {
   for (const StoppedPair<Real>& pair : pairs) {
     if (!(pair.pushed > 0)) continue;
     TalliedContact& one = log.tally.of(contact_of(pair, pair.normal));
-    one.impulse += one.contact.normal * static_cast<double>(pair.pushed);
+    one.impulse += one.contact.normal * (static_cast<double>(pair.pushed) * log.force_ratio);
   }
 }
 

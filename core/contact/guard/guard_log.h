@@ -15,7 +15,8 @@ namespace weft {
 /// Impulses of a tick by pairs of features, if they are wanted.
 struct GuardLog {
   bool wanted = false;
-  bool begun = false;  ///< a step of the tick has been made
+  bool begun = false;      ///< a step of the tick has been made
+  double force_ratio = 1;  ///< see Collision::before_drift
   ContactTally tally;
 };
 

@@ -141,7 +141,7 @@ void RowDeals<Real>::give_back(std::span<GuardRow<Real>> rows, Executor* executo
 }
 
 template <class Real>
-void RowDeals<Real>::note_pushes() {
+void RowDeals<Real>::note_pushes(Real force_ratio) {
   for (std::size_t number = 0; number < kDeals; ++number) {
     const std::vector<RowBlock<Real>>& blocks = blocks_[number];
     pushed_[number].resize(blocks.size());  // with zeros
@@ -149,7 +149,8 @@ void RowDeals<Real>::note_pushes() {
       for (std::size_t axis = 0; axis < 3; ++axis) {
         for (std::size_t k = 0; k < kBatchRows; ++k)
           pushed_[number][b][axis][k] +=
-              blocks[b].normal[axis][k] * blocks[b].push[k] + blocks[b].drag[axis][k];
+              (blocks[b].normal[axis][k] * blocks[b].push[k] + blocks[b].drag[axis][k]) *
+              force_ratio;
       }
     }
   }

@@ -36,7 +36,8 @@ class RowDeals {
   /// Gives back what responses have changed since the rows were taken over or given back.
   void give_back(std::span<GuardRow<Real>> rows, Executor* executor);
   /// Adds up what the rows push in this step, until it is logged or forgotten.
-  void note_pushes();
+  /// @param force_ratio  see Collision::before_drift
+  void note_pushes(Real force_ratio);
   /// Logs what was added up. Call before rows are taken over anew.
   void log_pushes(std::span<const GuardRow<Real>> rows, GuardLog& log);
   void forget_pushes();

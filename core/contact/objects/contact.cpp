@@ -81,7 +81,12 @@ void Contact<Real>::note_motion(const ClothState<Real>& state) {
 }
 
 template <class Real>
-void Contact<Real>::note_kicked(const ClothState<Real>& state) {
+void Contact<Real>::note_kicked(const ClothState<Real>& state, double force_ratio) {
+  if (motion_.force_ratio != force_ratio) {
+    note_lone(rows_, response_, log_);  // what they gave at the old ratio
+    motion_.force_ratio = force_ratio;
+    log_.set_force_ratio(force_ratio);
+  }
   if (cloths_.bounces) bounces_.v_kicked = state.v;
 }
 

@@ -71,7 +71,8 @@ class Contact {
   void note_motion(const ClothState<Real>& state);
   /// After the kick and before any impulse of contact, that of cloths on each other too, notes the
   /// velocities. Without, `resolve` and `settle` take those that they find for them.
-  void note_kicked(const ClothState<Real>& state);
+  /// @param force_ratio  see Collision::before_drift
+  void note_kicked(const ClothState<Real>& state, double force_ratio = 1);
 
   /// Makes the velocities admissible for the coming drift of `dt` [s], in which objects move as
   /// planned. Positions change only by pushing out what is nearer than the thickness, slowly and

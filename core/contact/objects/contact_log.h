@@ -26,6 +26,10 @@ class ContactLog {
   /// @param each      all impulses one by one, for `visit_from`
   void want(bool contacts, bool each);
 
+  /// Says what is told for an impulse of 1 that velocities get from now on: see
+  /// Collision::before_drift.
+  void set_force_ratio(double ratio) { force_ratio_ = ratio; }
+
   /// Forgets everything: a tick begins, or the rows have gone.
   void clear();
 
@@ -44,7 +48,7 @@ class ContactLog {
   /// @param change  of the velocity of the row's point [m/s]; it is shared by mass
   [[gnu::always_inline]] void add(const auto& rows, std::size_t r, const auto& change) {
     assert(sums_.size() == rows.size() && "see comes first");
-    const Vec3d impulse = change.template cast<double>() * sums_[r].mass;
+    const Vec3d impulse = change.template cast<double>() * (sums_[r].mass * force_ratio_);
     sums_[r].impulse += impulse;
     if (each_wanted_) [[unlikely]]
       enter(rows[r], impulse);
@@ -63,7 +67,7 @@ class ContactLog {
 
   /// Notes what is not one of the rows: it got a change of velocity [m/s].
   void add_apart(const auto& row, const auto& change, const auto& state) {
-    const Vec3d impulse = change.template cast<double>() * mass_of(row, state);
+    const Vec3d impulse = change.template cast<double>() * (mass_of(row, state) * force_ratio_);
     book(row, impulse, Vec3d::Zero());
     if (each_wanted_) enter(row, impulse);
   }
@@ -145,6 +149,7 @@ class ContactLog {
   static void sort(std::vector<ContactPoint>& contacts);
 
   bool wanted_ = false, each_wanted_ = false;
+  double force_ratio_ = 1;
   std::vector<RowSum> sums_;     ///< of each row
   std::vector<Vec3d> squeezes_;  ///< of jaws, of each row; empty: none squeezes [N s]
   ContactTally tally_;

@@ -48,7 +48,8 @@ bool keep_off_mover(ObjectCertificate<Real>& c, const ContactRow<Real>& row) {
     const Vec3<Real> normal = behind > 0 ? row.normal : (frame.turn * row.normal).eval();
     state.v[i] += normal * (std::max(least - end, behind) / c.dt * Real(kLiftSlack));
     const Real gained = (state.v[i].squaredNorm() - before.squaredNorm()) / 2;
-    c.motion.work += std::max(0.0, static_cast<double>(gained / state.inverse_mass[i]));
+    c.motion.work +=
+        std::max(0.0, static_cast<double>(gained / state.inverse_mass[i])) * c.motion.force_ratio;
     tell_stop(c, row, k, before);
   }
   return kept;

@@ -17,8 +17,11 @@ void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Ve
   const Vec3d along = normal.template cast<double>();
   state.impulse += impulse;
   state.pushed += along * along.dot(impulse);
-  state.angular_impulse += (point.template cast<double>() - state.pose.position).cross(impulse);
-  motion.work += impulse.dot(row.surface.template cast<double>());
+  const Vec3d turn = (point.template cast<double>() - state.pose.position).cross(impulse);
+  state.angular_impulse += turn;
+  state.told.impulse += impulse * motion.force_ratio;
+  state.told.angular += turn * motion.force_ratio;
+  motion.work += impulse.dot(row.surface.template cast<double>()) * motion.force_ratio;
   if (row.presser != kNone)
     (*motion.colliders)[at_index(row.presser)].pinch.pushes[row.side] += along.dot(impulse);
 }

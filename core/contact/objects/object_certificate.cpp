@@ -95,7 +95,8 @@ void tell_stop(ObjectCertificate<Real>& c, const ContactRow<Real>& row, std::siz
   if (row.mover != kNone) {
     assert(c.state.inverse_mass[i] > 0 && "what is held is not stopped");
     const Vec3<Real> impulse = change / c.state.inverse_mass[i];
-    (*c.motion.colliders)[at_index(row.collider)].besides += impulse.template cast<double>();
+    (*c.motion.colliders)[at_index(row.collider)].besides +=
+        impulse.template cast<double>() * c.motion.force_ratio;
   }
   if (!c.log.wanted()) return;
   ContactRow<Real> single = row;

@@ -20,6 +20,7 @@ struct ObjectMotion {
   Real since_pairs = 0;      ///< longest displacement since the pairs were collected [m]
   Real since_rows = 0;       ///< since the rows were made, with the coming substep [m]
   Real coming = 0;           ///< in the coming substep alone [m]
+  double force_ratio = 1;    ///< see Collision::before_drift
   double work = 0;           ///< on the cloth in this tick [J]
 
   /// No object moves, or has moved since the lists were made.
