@@ -36,12 +36,13 @@ inline double share_bend_v(const GridCells& g, int r, int c) {
   return half > 0 ? half * g.stiffening_along_v(r, c) : 0;
 }
 
-/// Row `k` of the matrix of second differences 1 -2 1 along a line of particles.
+/// What a particle of a line has a part in: second differences 1 -2 1 centred at itself and its
+/// neighbours, and cells.
 template <class Real>
 struct BendingRow {
-  Real here = 0, before = 0, behind = 0;  ///< weights of the particle itself and its neighbours
-  Real two_before = 0, two_behind = 0;    ///< of those two away
-  Real cells = 0;                         ///< that meet at the particle, 1 or 2
+  Real before = 0, here = 0, behind = 0;  ///< factors of the differences; 0: there is none
+  Real cell_before = 0, cell_behind = 0;  ///< 1 if there is such a cell, else 0
+  Real cells() const { return cell_before + cell_behind; }
 };
 
 /// @param count       of particles
@@ -54,14 +55,12 @@ BendingRow<Real> bending_row(int k, int count, const std::vector<double>& stiffe
     if (n <= 0 || n + 1 >= count) return 0.0;
     return stiffening.empty() ? 1.0 : stiffening[static_cast<std::size_t>(n)];
   };
-  const double before = inner(k - 1), here = inner(k), behind = inner(k + 1);
   BendingRow<Real> row;
-  row.here = static_cast<Real>(before + 4 * here + behind);
-  row.before = static_cast<Real>(-2 * (before + here));
-  row.behind = static_cast<Real>(-2 * (here + behind));
-  row.two_before = static_cast<Real>(before);
-  row.two_behind = static_cast<Real>(behind);
-  row.cells = static_cast<Real>((k > 0) + (k + 1 < count));
+  row.before = static_cast<Real>(inner(k - 1));
+  row.here = static_cast<Real>(inner(k));
+  row.behind = static_cast<Real>(inner(k + 1));
+  row.cell_before = k > 0 ? Real(1) : Real(0);
+  row.cell_behind = k + 1 < count ? Real(1) : Real(0);
   return row;
 }
 

@@ -2,7 +2,11 @@
 
 #include "core/solver/grid_relaxation.h"
 
+#include <algorithm>
 #include <cassert>
+#include <span>
+
+#include "core/geometry/exact_origin.h"
 
 namespace weft {
 namespace {
@@ -51,30 +55,28 @@ void GridRelaxation<Real>::prepare(const ClothPart<Real>& part) {
   view_.free = at_origin(free_);
 
   const auto row_size = static_cast<std::size_t>(view_.stride + 3 * kSweepMargin);
-  for (Array* table : {&border_, &softer_, &bend_, &bend_left_, &bend_right_, &bend_two_left_,
-                       &bend_two_right_, &cells_})
+  for (Array* table :
+       {&border_, &softer_, &bend_left_, &bend_, &bend_right_, &cell_left_, &cell_right_})
     table->assign(row_size, Real(0));
   const auto origin = [](Array& table) { return table.data() + kSweepMargin; };
   for (int c = 0; c < view_.columns; ++c) {
     const std::ptrdiff_t k = place(0, c);
     const BendingRow<Real> line = bending_row<Real>(c, view_.columns, part.cells.column_stiffening);
-    origin(bend_)[k] = line.here;
     origin(bend_left_)[k] = line.before;
+    origin(bend_)[k] = line.here;
     origin(bend_right_)[k] = line.behind;
-    origin(bend_two_left_)[k] = line.two_before;
-    origin(bend_two_right_)[k] = line.two_behind;
-    origin(cells_)[k] = line.cells;
-    origin(border_)[k] = Real(0.5) * origin(cells_)[k];
+    origin(cell_left_)[k] = line.cell_before;
+    origin(cell_right_)[k] = line.cell_behind;
+    origin(border_)[k] = Real(0.5) * line.cells();
     origin(softer_)[k] = Real(1) / origin(border_)[k];
   }
   view_.border = origin(border_);
   view_.softer = origin(softer_);
-  view_.bend = origin(bend_);
   view_.bend_left = origin(bend_left_);
+  view_.bend = origin(bend_);
   view_.bend_right = origin(bend_right_);
-  view_.bend_two_left = origin(bend_two_left_);
-  view_.bend_two_right = origin(bend_two_right_);
-  view_.cells = origin(cells_);
+  view_.cell_left = origin(cell_left_);
+  view_.cell_right = origin(cell_right_);
   for (int r = 0; r < view_.rows; ++r)
     view_.row_bend.push_back(bending_row<Real>(r, view_.rows, part.cells.row_stiffening));
   view_.length[0] = springs_.rest_warp;
@@ -136,8 +138,10 @@ void GridRelaxation<Real>::for_each_number(Visit&& visit) const {
 template <class Real>
 void GridRelaxation<Real>::load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt) {
   assert(v.size() == x.size() && dt > 0);
+  const auto count = static_cast<std::size_t>(view_.rows) * static_cast<std::size_t>(view_.columns);
+  std::copy_n(exact_origin<Real>(std::span(x).subspan(first_, count)).data(), 3, view_.origin);
   for_each_number([&](std::size_t i, std::ptrdiff_t here, int k) {
-    view_.x[k][here] = x[i][k];
+    view_.x[k][here] = x[i][k] - view_.origin[k];
     view_.displacement[k][here] = v[i][k] * dt;
   });
 }
@@ -153,7 +157,7 @@ template <class Real>
 void GridRelaxation<Real>::store(Vec3Array<Real>& x, Vec3Array<Real>& v, Real dt) const {
   assert(v.size() == x.size() && dt > 0);
   for_each_number([&](std::size_t i, std::ptrdiff_t here, int k) {
-    x[i][k] = view_.x[k][here];
+    x[i][k] = view_.origin[k] + view_.x[k][here];
     v[i][k] = view_.displacement[k][here] / dt;
   });
 }

@@ -21,7 +21,8 @@ template <class Real>
 struct SweepView {
   int rows = 0, columns = 0;
   std::ptrdiff_t half = 0, stride = 0;
-  Real* x[3] = {};               ///< positions at the start of the substep [m]
+  Real origin[3] = {};           ///< near the places when they were loaded [m]
+  Real* x[3] = {};               ///< positions at the start of the substep, from the origin [m]
   Real* displacement[3] = {};    ///< x' - x, displacement of the substep [m]
   const Real* force[3] = {};     ///< of hands, slings and air [N]; read on request
   const Real* w = nullptr;       ///< inverse masses [1/kg], 0 if pinned
@@ -32,9 +33,8 @@ struct SweepView {
   const Real* border = nullptr;  ///< by column: 1/2 on border lines, else 1
   const Real* softer = nullptr;  ///< by column: 2 on border lines, else 1
   /// Bending along the rows, by column; see BendingRow.
-  const Real *bend = nullptr, *bend_left = nullptr, *bend_right = nullptr;
-  const Real *bend_two_left = nullptr, *bend_two_right = nullptr;
-  const Real* cells = nullptr;             ///< by column: cells that meet there, 1 or 2
+  const Real *bend_left = nullptr, *bend = nullptr, *bend_right = nullptr;
+  const Real *cell_left = nullptr, *cell_right = nullptr;
   std::vector<BendingRow<Real>> row_bend;  ///< bending across the rows, by row
   Real length[3] = {};                     ///< rest lengths: along, down, diagonal [m]
   Real alpha[3] = {};  ///< alpha~ inside the grid [1/kg]; 0 without such springs
@@ -83,7 +83,8 @@ class GridRelaxation {
   /// @param softness  compliance / dt^2 [1/s^2]
   void set_masses(const std::vector<Real>& inverse_mass, Real softness);
 
-  /// Loads positions and displacements v dt of the whole model.
+  /// Loads positions and displacements v dt of the whole model, and chooses the origin: seen from
+  /// near, places change in finer steps than the model's floats.
   void load(const Vec3Array<Real>& x, const Vec3Array<Real>& v, Real dt);
   void load_force(const Vec3Array<Real>& force);
 
@@ -106,8 +107,7 @@ class GridRelaxation {
   std::size_t first_ = 0;  ///< index in the model of the grid's particle 0
   std::array<Array, 3> x_, displacement_, force_;
   std::array<Array, 4> share_, multiplier_;
-  Array w_, free_, border_, softer_, bend_, bend_left_, bend_right_, bend_two_left_,
-      bend_two_right_, cells_;
+  Array w_, free_, border_, softer_, bend_left_, bend_, bend_right_, cell_left_, cell_right_;
 };
 
 }  // namespace weft

@@ -136,60 +136,66 @@ struct Places {
   std::ptrdiff_t at, left, right, column;
 };
 
-/// Bending of one row in registers: the stencils of bending_stencil.h, summed per particle. Beyond
-/// the border all positions are 0 and have no effect.
+/// Second differences about the three places in the middle of five of a line, with factors and the
+/// weights 1 -2 1.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE V bent_line(const V (&x)[5], const V (&factor)[3]) {
+  const V a = hn::Sub(x[1], x[0]), b = hn::Sub(x[2], x[1]);
+  const V c = hn::Sub(x[3], x[2]), e = hn::Sub(x[4], x[3]);
+  const V middle = hn::Mul(hn::Sub(c, b), factor[1]);
+  const V ends = hn::Add(hn::Mul(hn::Sub(b, a), factor[0]), hn::Mul(hn::Sub(e, c), factor[2]));
+  return hn::Sub(ends, hn::Add(middle, middle));
+}
+
+/// Bending of one row in registers: the stencils of bending_stencil.h, summed per particle. It
+/// begins with differences of neighbours, whose rounding is as small as they are: that of places
+/// would not cancel in the sum of all forces. Beyond the border factors are 0.
 template <class D, class Real = hn::TFromD<D>, class V = hn::Vec<D>>
 struct RowBending {
   D d;
-  V here, up, down, two_up, two_down, cells_across;  ///< weights of the stencils across the rows
-  V along, across, twist;                            ///< stiffnesses
-  const Real *bend, *bend_left, *bend_right, *bend_two_left, *bend_two_right;  ///< by column
-  const Real *cells, *border;                                                  ///< by column
+  V rows[3], cell_up, cell_down;  ///< factors across the rows
+  V along, across, twist;         ///< stiffnesses
+  const Real *bend_left, *bend, *bend_right, *cell_left, *cell_right, *border;  ///< by column
   std::ptrdiff_t stride;
 
   HWY_INLINE RowBending(D tag, const SweepView<Real>& g, int r, std::ptrdiff_t column)
-      : d(tag), bend(g.bend + column), bend_left(g.bend_left + column),
-        bend_right(g.bend_right + column), bend_two_left(g.bend_two_left + column),
-        bend_two_right(g.bend_two_right + column), cells(g.cells + column),
-        border(g.border + column), stride(g.stride) {
+      : d(tag), bend_left(g.bend_left + column), bend(g.bend + column),
+        bend_right(g.bend_right + column), cell_left(g.cell_left + column),
+        cell_right(g.cell_right + column), border(g.border + column), stride(g.stride) {
     const BendingRow<Real>& line = g.row_bend[static_cast<std::size_t>(r)];
-    here = hn::Set(d, line.here);
-    up = hn::Set(d, line.before);
-    down = hn::Set(d, line.behind);
-    two_up = hn::Set(d, line.two_before);
-    two_down = hn::Set(d, line.two_behind);
-    cells_across = hn::Set(d, line.cells);
-    along = hn::Set(d, Real(0.5) * line.cells * g.bending.along_u);
+    rows[0] = hn::Set(d, line.before);
+    rows[1] = hn::Set(d, line.here);
+    rows[2] = hn::Set(d, line.behind);
+    cell_up = hn::Set(d, line.cell_before);
+    cell_down = hn::Set(d, line.cell_behind);
+    along = hn::Set(d, Real(0.5) * line.cells() * g.bending.along_u);
     across = hn::Set(d, g.bending.along_v);
     twist = hn::Set(d, g.bending.twist);
-  }
-
-  HWY_INLINE V twist_of(V cells_along, V x, const Real* left, const Real* right) const {
-    return hn::Sub(hn::Sub(hn::Mul(x, cells_along), hn::LoadU(d, left)), hn::LoadU(d, right));
   }
 
   /// One component of minus the force on particles n, n + 1, ...
   /// @param x,left,right  that component of the positions of particle 0 and of its neighbours
   HWY_INLINE V pull(const Real* x, const Real* left, const Real* right, std::ptrdiff_t n) const {
-    const Real* p = x + n;
-    const V x0 = hn::LoadU(d, p), xu = hn::LoadU(d, p - stride), xd = hn::LoadU(d, p + stride);
-    const V two_along = hn::Add(hn::Mul(hn::LoadU(d, p - 1), hn::LoadU(d, bend_two_left + n)),
-                                hn::Mul(hn::LoadU(d, p + 1), hn::LoadU(d, bend_two_right + n)));
-    const V two_across = hn::Add(hn::Mul(hn::LoadU(d, p - 2 * stride), two_up),
-                                 hn::Mul(hn::LoadU(d, p + 2 * stride), two_down));
-    const V one_along = hn::Add(hn::Mul(hn::LoadU(d, left + n), hn::LoadU(d, bend_left + n)),
-                                hn::Mul(hn::LoadU(d, right + n), hn::LoadU(d, bend_right + n)));
-    const V one_across = hn::Add(hn::Mul(xu, up), hn::Mul(xd, down));
-    const V bent_along =
-        hn::Add(hn::Add(hn::Mul(x0, hn::LoadU(d, bend + n)), one_along), two_along);
-    const V bent_across = hn::Add(hn::Add(hn::Mul(x0, here), one_across), two_across);
-    const V c = hn::LoadU(d, cells + n);
-    const V twisted = hn::Sub(hn::Sub(hn::Mul(twist_of(c, x0, left + n, right + n), cells_across),
-                                      twist_of(c, xu, left + n - stride, right + n - stride)),
-                              twist_of(c, xd, left + n + stride, right + n + stride));
-    return hn::Add(hn::Add(hn::Mul(bent_along, along),
-                           hn::Mul(bent_across, hn::Mul(across, hn::LoadU(d, border + n)))),
-                   hn::Mul(twisted, twist));
+    const auto at = [&](const Real* p) HWY_ATTR { return hn::LoadU(d, p + n); };
+    const V place = at(x), to_left = hn::Sub(at(left), place), to_right = hn::Sub(place, at(right));
+    const V bent_along = bent_line<D>({at(x - 1), at(left), place, at(right), at(x + 1)},
+                                      {at(bend_left), at(bend), at(bend_right)});
+    const V up = at(x - stride), down = at(x + stride);
+    const V bent_across =
+        bent_line<D>({at(x - 2 * stride), up, place, down, at(x + 2 * stride)}, rows);
+    const V has_left = at(cell_left), has_right = at(cell_right);
+    // The twists of the cells between this row and another, the right one's less the left one's.
+    const auto twists = [&](V other, std::ptrdiff_t row) HWY_ATTR {
+      const V other_left = hn::Sub(at(left + row), other);
+      const V other_right = hn::Sub(other, at(right + row));
+      return hn::Sub(hn::Mul(hn::Sub(to_right, other_right), has_right),
+                     hn::Mul(hn::Sub(to_left, other_left), has_left));
+    };
+    const V twisted =
+        hn::Add(hn::Mul(twists(down, stride), cell_down), hn::Mul(twists(up, -stride), cell_up));
+    return hn::Add(
+        hn::Add(hn::Mul(bent_along, along), hn::Mul(bent_across, hn::Mul(across, at(border)))),
+        hn::Mul(twisted, twist));
   }
 };
 

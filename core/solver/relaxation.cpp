@@ -84,7 +84,7 @@ Prediction<Real> prediction(const Tick<Real>& tick) {
           tick.has_external_forces()};
 }
 
-/// Eq. (5), into `wanted`: displacements for compliant springs, positions for rigid ones.
+/// Eq. (5), as displacements.
 template <class Real>
 void predict(Tick<Real>& tick) {
   const StageTimer timer(tick.profile, Stage::integration, tick.state.x.size());
@@ -107,31 +107,33 @@ void predict(Tick<Real>& tick) {
         const Vec3<Real> acceleration = tick.work.force[i] * w + tick.surroundings.gravity;
         displacement = state.v[i] * tick.dt * step.keep + acceleration * step.dt2;
       }
-      tick.work.wanted[i] = tick.compliant() ? displacement : (state.x[i] + displacement).eval();
+      tick.work.wanted[i] = displacement;
     }
   }
 }
 
-/// Relaxes `count` rigid springs: first, first + step, ...
+/// Relaxes `count` rigid springs: first, first + step, ... Their ends are at x +
+/// displacement.
 template <class Real>
 void sweep_rigid(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
-  Vec3Array<Real>& x = tick.work.wanted;
+  const Vec3Array<Real>& x = tick.state.x;
+  Vec3Array<Real>& displacement = tick.work.wanted;
   const std::vector<Real>& w = tick.state.inverse_mass;
   auto n = static_cast<std::ptrdiff_t>(first);
   for (; count > 0; --count, n += step) {
     const Spring<Real>& spring = tick.model.springs[static_cast<std::size_t>(n)];
     const auto i = static_cast<std::size_t>(spring.i), j = static_cast<std::size_t>(spring.j);
     const Real mobility = w[i] + w[j];
-    const Vec3<Real> delta = x[j] - x[i];
+    const Vec3<Real> delta = (x[j] - x[i]) + (displacement[j] - displacement[i]);
     const Real length = delta.norm();
     if (mobility == 0 || spring.stiffness == 0 || !(length > 0)) continue;
     const Real excess = Real(1) - spring.rest_length / length;
-    x[i] += delta * (excess * (w[i] / mobility));
-    x[j] -= delta * (excess * (w[j] / mobility));
+    displacement[i] += delta * (excess * (w[i] / mobility));
+    displacement[j] -= delta * (excess * (w[j] / mobility));
   }
 }
 
-/// The same for compliant springs, with ends at x + displacement.
+/// The same for compliant springs.
 template <class Real>
 void sweep_compliant(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
   const auto softness = static_cast<Real>(tick.solver.compliance) / (tick.dt * tick.dt);
@@ -255,20 +257,18 @@ void meter_sweeps(const Tick<Real>& tick) {
 template <class Real>
 std::optional<BlowUp> move(Tick<Real>& tick) {
   ClothState<Real>& state = tick.state;
-  Vec3Array<Real>& wanted = tick.work.wanted;
-  const bool compliant = tick.compliant();
-  for (std::size_t i = 0; i < state.x.size(); ++i)
-    state.v[i] = (compliant ? wanted[i] : (wanted[i] - state.x[i]).eval()) / tick.dt;
+  const Vec3Array<Real>& wanted = tick.work.wanted;
+  for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = wanted[i] / tick.dt;
   meter_sweeps(tick);
   if (tick.collision.empty()) {
-    if (!compliant) std::swap(state.x, wanted);
-    for (std::size_t i = 0; compliant && i < state.x.size(); ++i) state.x[i] += wanted[i];
+    for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += wanted[i];
     return std::nullopt;
   }
   if (const auto found = find_blow_up(tick.model, state, tick.dt)) return found;
   tick.collision.before_drift(state, tick.dt, tick.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * tick.dt;
-  tick.collision.after_drift(state, tick.dt, tick.profile, compliant);  // see keeps_velocity
+  // See keeps_velocity.
+  tick.collision.after_drift(state, tick.dt, tick.profile, tick.compliant());
   return std::nullopt;
 }
 

@@ -56,7 +56,7 @@ template <class Real>
 struct RelaxationWorkspace {
   Vec3Array<Real> force;                    ///< of bending, hands, slings and air [N]
   Vec3Array<Real> external;                 ///< of slings and air only [N]
-  Vec3Array<Real> wanted;                   ///< positions before contact, or displacements [m]
+  Vec3Array<Real> wanted;                   ///< displacements of the substep before contact [m]
   std::vector<Real> multiplier;             ///< of each spring, within the substep [N s^2]
   Vec3Array<Real> membrane_multiplier;      ///< of each triangle's strains, likewise [kg m^2]
   std::vector<GridRelaxation<Real>> grids;  ///< for each part the row-wise form of XPBD
@@ -72,13 +72,13 @@ struct RelaxationWorkspace {
 /// all springs (Provot 1995) and moves both ends of each by half of the excess length; a pinned end
 /// leaves all of it to the other, and unequal masses share it inversely. The sweeps of a substep
 /// alternate forwards and backwards, so that the numbering favours no end of the cloth. Finally
-/// v = (x' - x) / dt.
+/// v = (x' - x) / dt. The variable of the sweeps is the displacement x' - x, so that many small
+/// substeps do not lose the velocity in the last bits of the positions.
 ///
 /// With compliance the same sweeps are XPBD (Macklin, Mueller, Chentanez 2016): a spring of
 /// stiffness k has compliance/k, and the three strains of a membrane triangle are relaxed together
-/// with compliance times the inverse of its tensor (membrane_relaxation.h). Their variable is the
-/// displacement x' - x, so that many small substeps do not lose the velocity in the last bits of
-/// the positions; on grids they run row by row in colours (grid_relaxation.h).
+/// with compliance times the inverse of its tensor (membrane_relaxation.h); on grids they run row
+/// by row in colours (grid_relaxation.h).
 ///
 /// @param dt        substep [s]
 /// @param substeps  at least one

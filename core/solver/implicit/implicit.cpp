@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cassert>
 #include <cmath>
+#include <span>
 
+#include "core/geometry/exact_origin.h"
 #include "core/solver/implicit/constants.h"
 #include "core/solver/implicit/implicit_step.h"
 #include "core/stop_signal.h"
@@ -89,6 +91,20 @@ bool is_violent(const Step<Real>& step, const EnergyReading& before, const Energ
   return !sound || lost > kViolentLoss * had + air_turnover(step);
 }
 
+/// Sees where each part starts from near it: displacements change that in finer steps than the
+/// model's floats, and such steps, in stiff cloth, are forces.
+template <class Real>
+void see_from_near(Step<Real>& step) {
+  const Vec3Array<Real>& x = step.state.x;
+  for (const ClothPart<Real>& part : step.model.parts) {
+    const auto first = static_cast<std::size_t>(part.particles.first);
+    const auto count = static_cast<std::size_t>(part.particles.count);
+    if (count == 0) continue;
+    const Vec3<Real> origin = exact_origin<Real>(std::span(x).subspan(first, count));
+    for (std::size_t i = first; i < first + count; ++i) step.work.start_near[i] = x[i] - origin;
+  }
+}
+
 /// Divides a substep into pieces of backward Euler; sets `work.displacement`, `x` and `v` at its
 /// end.
 /// @returns whether all linear systems were solved
@@ -108,6 +124,7 @@ bool solve_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double&
   take_back_forces(step);
   for (int k = 1; k <= pieces; ++k) {
     const Real passed = static_cast<Real>(k) / static_cast<Real>(pieces);
+    see_from_near(step);
     solved = solve_displacements(step, begin + (end - begin) * passed) && solved;
     brought += outer_work(step);
     meter_displacements(step);
@@ -132,6 +149,7 @@ bool solve_soundly(Step<Real>& step, Real begin, Real end, const EnergyReading& 
                    EnergyReading& after, double& brought) {
   ImplicitWorkspace<Real>& work = step.work;
   step.damped = false;
+  see_from_near(step);
   bool solved = solve_displacements(step, end);
   brought = outer_work(step);
   step.flows = {};
@@ -214,8 +232,8 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
       systems.push_back(ElementSystem<Real>(model, part));
     longest = std::max(longest, std::visit([](const auto& s) { return s.size(); }, systems.back()));
   }
-  for (Vec3Array<Real>* array : {&displacement, &x, &v, &force, &air, &last_displacement, &last_v,
-                                 &end_x, &end_v, &start_x, &start_v})
+  for (Vec3Array<Real>* array : {&displacement, &x, &v, &start_near, &near, &force, &air,
+                                 &last_displacement, &last_v, &end_x, &end_v, &start_x, &start_v})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   history.assign(model.mass.size(), 0);
   inertia.assign(model.mass.size(), Real(0));

@@ -57,6 +57,7 @@ struct ImplicitWorkspace {
   std::vector<System> systems;  ///< of each part
   EnergyPass<Real> energy;
   Vec3Array<Real> displacement, x, v;         ///< displacement, final positions and velocities
+  Vec3Array<Real> start_near, near;           ///< positions at start and end from near the part [m]
   Vec3Array<Real> force, air;                 ///< [N]
   Vec3Array<Real> last_displacement, last_v;  ///< of the previous substep
   Vec3Array<Real> end_x, end_v;               ///< at the end of the previous tick

@@ -19,6 +19,7 @@ void place(Step<Real>& step) {
   ImplicitWorkspace<Real>& work = step.work;
   for (std::size_t i = 0; i < work.x.size(); ++i) {
     work.x[i] = step.state.x[i] + work.displacement[i];
+    work.near[i] = work.start_near[i] + work.displacement[i];
     if (!step.movable(i)) {
       work.v[i] = Vec3<Real>::Zero();
       continue;
@@ -140,7 +141,7 @@ void linearise(Step<Real>& step, Real progress) {
     for (std::size_t i = 0; i < work.force.size(); ++i) work.force[i] += work.air[i];
   add_sling_forces(step.grabs, work.force);
   add_hands(step, progress);
-  const NewtonPoint<Real> point{work.x, work.v, Real(1.5) / step.dt, work.inertia,
+  const NewtonPoint<Real> point{work.near, work.v, Real(1.5) / step.dt, work.inertia,
                                 step.surroundings.air ? &work.air_blocks : nullptr};
   for (std::size_t p = 0; p < step.model.parts.size(); ++p) {
     if (step.state.is_asleep(p)) continue;

@@ -53,7 +53,8 @@ struct Scheme {
 template <class Real>
 void take_hands(Step<Real>& step);
 
-/// Solves for the displacements of a substep: `displacement`, and the resulting `x` and `v`.
+/// Solves for the displacements of a substep from `start_near`: `displacement`, and the resulting
+/// `x` and `v`.
 /// @param progress  fraction of the tick that has passed at its end, 0 to 1
 /// @returns whether all its linear systems were solved
 template <class Real>

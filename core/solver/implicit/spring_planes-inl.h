@@ -86,6 +86,55 @@ HWY_INLINE void linearise_row(SpringPlanes<Real>& springs, Real rate, const Real
   }
 }
 
+/// Second differences about the three places in the middle of five of a line, with factors and the
+/// weights 1 -2 1.
+template <class D, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> bent_line(D d, const Triple<V> (&x)[5], V before, V here, V behind) {
+  const Triple<V> a = x[1] - x[0], b = x[2] - x[1], c = x[3] - x[2], e = x[4] - x[3];
+  const Triple<V> ends = fused(d, b - a, before, (e - c) * behind);
+  return ends - (c - b) * hn::Add(here, here);
+}
+
+/// Minus the force of bending on a row of particles. It begins with differences of neighbours,
+/// whose rounding is as small as they are: that of places, as in `add_bending`, would not cancel in
+/// the sum of all forces.
+template <class D, class Real, class V = hn::Vec<D>>
+HWY_INLINE Triple<V> bending_pull(D d, const SpringGrid<Real>& g, const PlaneVector<Real>& p, int r,
+                                  std::ptrdiff_t c) {
+  const std::ptrdiff_t s = g.layout.stride, k = g.layout.at(r, 0) + c;
+  const BendingLine<Real>& row = g.row_bending[static_cast<std::size_t>(r)];
+  const auto column = [&](std::ptrdiff_t number) HWY_ATTR {
+    return hn::LoadU(d, g.column_bending.data() + number * g.bending_pitch() + kGridMargin + c);
+  };
+  const auto place = [&](std::ptrdiff_t at) HWY_ATTR { return p(d, k + at); };
+  // The weight of a place is the factors of the differences beside it and four times its own.
+  const auto own = [](Real before, Real here, Real behind) {
+    return (here - before - behind) * Real(0.25);
+  };
+  const V u_before = column(0), u_behind = column(4);
+  const V u_here = hn::Mul(hn::Sub(hn::Sub(column(2), u_before), u_behind), hn::Set(d, Real(0.25)));
+  const Triple<V> here = place(0), left = place(-1), right = place(1), up = place(-s),
+                  down = place(s);
+  const Triple<V> u =
+      bent_line(d, {place(-2), left, here, right, place(2)}, u_before, u_here, u_behind);
+  const Triple<V> v =
+      bent_line(d, {place(-2 * s), up, here, down, place(2 * s)}, hn::Set(d, row.bend[0]),
+                hn::Set(d, own(row.bend[0], row.bend[2], row.bend[4])), hn::Set(d, row.bend[4]));
+  // The twists of the cells between this row and another, the right one's less the left one's.
+  const V has_left = column(5), has_right = column(7);  // minus 1 where there is a cell
+  const Triple<V> to_left = left - here, to_right = here - right;
+  const auto twists = [&](const Triple<V>& other, std::ptrdiff_t at) HWY_ATTR {
+    const Triple<V> other_left = place(at - 1) - other, other_right = other - place(at + 1);
+    return (to_right - other_right) * has_right - (to_left - other_left) * has_left;
+  };
+  const Triple<V> twist = fused(d, twists(down, s), hn::Set(d, row.slope[2]),
+                                twists(up, -s) * hn::Set(d, row.slope[0]));
+  const V along_u = hn::Set(d, g.bending.along_u * Real(0.5) * row.width);
+  const V along_v =
+      hn::Mul(hn::Set(d, g.bending.along_v), hn::Mul(hn::Set(d, Real(0.5)), column(8)));
+  return fused(d, u, along_u, fused(d, v, along_v, twist * hn::Set(d, g.bending.twist)));
+}
+
 /// Sums the forces of this row of springs, of the previous one and of bending on a row of
 /// particles, in the same order for any vector width.
 template <class Real>
@@ -97,13 +146,12 @@ HWY_INLINE void add_up_row(SpringPlanes<Real>& springs, const SpringGrid<Real>& 
   const PlaneVector<Real> place(layout, x);
   const ForceRow<Real> here(springs, layout, r), above(springs, layout, r + 1);
   const bool bends = grid.bends();
-  const V zero = hn::Zero(d);
   for (std::ptrdiff_t c = 0; c < layout.columns; c += static_cast<std::ptrdiff_t>(hn::Lanes(d))) {
     Triple<V> sum = here.load(d, kAlong, c) - here.load(d, kAlong, c - 1);
     sum = sum + here.load(d, kDown, c) - above.load(d, kDown, c);
     sum = sum + here.load(d, kFalling, c) - above.load(d, kFalling, c - 1);
     sum = sum + here.load(d, kRising, c - 1) - above.load(d, kRising, c);
-    if (bends) sum = sum - add_bending(d, grid, place, r, c, Triple<V>{zero, zero, zero});
+    if (bends) sum = sum - bending_pull(d, grid, place, r, c);
     store_planes(d, sum, layout.plane, force + layout.at(r, 0) + c);
   }
 }
