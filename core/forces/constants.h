@@ -24,6 +24,11 @@ inline constexpr double kSmallestSquaredStretch = 1e-12;
 /// square metres are softer. Smaller: infinite in float.
 inline constexpr double kLeastDeterminant = 1e-25;
 
+/// Forces on a grid see its places to the last bit where the steps of single precision would shake
+/// them by more than this [m/s^2]. Larger: stiff cloth of small cells creeps where it sticks.
+/// Smaller: cloth that does not bend so hard is slower.
+inline constexpr double kMostShake = 0.1;
+
 // Air.
 
 /// Keeps the division by a normal's length finite for a triangle without area [m^4]. Larger: small

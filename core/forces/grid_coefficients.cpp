@@ -2,6 +2,9 @@
 
 #include "core/forces/grid_coefficients.h"
 
+#include <algorithm>
+#include <limits>
+
 #include "core/cloth/bending_stencil.h"
 #include "core/forces/grid_view.h"
 #include "core/instantiate.h"
@@ -30,6 +33,17 @@ std::vector<Real> coefficient_row(const ClothPart<Real>& part, int r, std::ptrdi
   return lines;
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(coefficient_row)
+template <class Real>
+double shake_of(const ClothPart<Real>& part) {
+  const GridSprings<Real>& springs = *part.grid_springs;
+  const auto u = static_cast<double>(springs.rest_warp), v = static_cast<double>(springs.rest_weft);
+  const double step = std::max(u * part.columns, v * part.rows) *
+                      static_cast<double>(std::numeric_limits<Real>::epsilon());
+  const QuadraticBending<Real>& bending = part.quadratic_bending;
+  const auto stiffness = static_cast<double>(bending.along_u + bending.along_v + bending.twist);
+  return 6 * stiffness * step / (part.fabric.areal_density * u * v);
+}
+
+WEFT_INSTANTIATE_FUNCTIONS(coefficient_row, shake_of)
 
 }  // namespace weft

@@ -14,4 +14,8 @@ namespace weft {
 template <class Real>
 std::vector<Real> coefficient_row(const ClothPart<Real>& part, int row, std::ptrdiff_t line);
 
+/// Acceleration by bending of a particle whose place changes by a last bit [m/s^2].
+template <class Real>
+double shake_of(const ClothPart<Real>& part);
+
 }  // namespace weft

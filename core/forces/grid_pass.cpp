@@ -85,6 +85,7 @@ void GridPass<Real>::prepare(const ClothPart<Real>& part) {
   lay_out_coefficients(part);
   view_.springs = *part.grid_springs;
   view_.misfit = MisfitLaw<Real>(view_.springs);
+  view_.fine = shake_of(part) > kMostShake;
   air_normal_ = static_cast<Real>(part.fabric.air_normal);
   air_tangential_ = static_cast<Real>(part.fabric.air_tangential);
   view_.motion = allocate(motion_, (view_.rows + 2) * GridView<Real>::kMotionLines);

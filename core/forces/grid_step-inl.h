@@ -17,11 +17,26 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Differences of coordinates of one line, and of what drifts have lost of them if `Fine`.
+template <bool Fine, class Real>
+struct Differences {
+  const Real* x;        ///< of the line
+  std::ptrdiff_t lost;  ///< from there to what was lost
+
+  template <class D>
+  HWY_INLINE hn::Vec<D> operator()(D d, std::ptrdiff_t from, std::ptrdiff_t to) const {
+    const auto seen = hn::Sub(hn::LoadU(d, x + to), hn::LoadU(d, x + from));
+    if constexpr (!Fine) return seen;
+    const Real* const rest = x + lost;
+    return hn::Add(seen, hn::Sub(hn::LoadU(d, rest + to), hn::LoadU(d, rest + from)));
+  }
+};
+
 /// Force factors of one kind of spring that starts on a row, into a line of scratch. One loop per
 /// kind is short enough for the processor to overlap several vectors, which hides the latency of
 /// roots and divisions.
 /// @param from, to  offsets of a spring's ends from its site in the row
-template <class Real>
+template <bool Fine, class Real>
 HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real rest_length,
                                 Real damping_time, GridCoefficient stiffness, std::ptrdiff_t from,
                                 std::ptrdiff_t to, Real* factor) {
@@ -32,9 +47,12 @@ HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r, Real 
                          hn::Set(d, Real(kSmallestSquaredLength))};
   const Real* const x = g.motion + r * g.pitch();
   const Real* const v = x + GridView<Real>::kVelocityLine * g.line;
+  const Real* const lost = x + GridView<Real>::kRemainderLine * g.line;
   const Real* const k = g.row[r].coefficients + stiffness * g.line;
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-    const auto delta = load(d, x + to + c, g.line) - load(d, x + from + c, g.line);
+    auto delta = load(d, x + to + c, g.line) - load(d, x + from + c, g.line);
+    if constexpr (Fine)
+      delta = delta + (load(d, lost + to + c, g.line) - load(d, lost + from + c, g.line));
     const auto speed = load(d, v + to + c, g.line) - load(d, v + from + c, g.line);
     hn::StoreU(spring(d, law, hn::LoadU(d, k + c), delta, speed), d, factor + c);
   }
@@ -78,22 +96,22 @@ struct ForceLines {
   }
 };
 
-template <class Real>
+template <bool Fine, class Real>
 HWY_INLINE void compute_factors(const GridView<Real>& g, std::ptrdiff_t r,
                                 const ForceLines<Real>& to) {
   const GridSprings<Real>& s = g.springs;
   const std::ptrdiff_t below = g.pitch();
   if (to.softened != nullptr) soften_twist(g, r, to.softened);
-  compute_factors(g, r, s.rest_warp, s.warp_time, kWarp, 0, 1, to.along);
-  compute_factors(g, r, s.rest_weft, s.weft_time, kWeft, 0, below, to.down);
-  compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 0, below + 1, to.falling);
-  compute_factors(g, r, s.rest_shear, s.shear_time, kShear, 1, below, to.rising);
+  compute_factors<Fine>(g, r, s.rest_warp, s.warp_time, kWarp, 0, 1, to.along);
+  compute_factors<Fine>(g, r, s.rest_weft, s.weft_time, kWeft, 0, below, to.down);
+  compute_factors<Fine>(g, r, s.rest_shear, s.shear_time, kShear, 0, below + 1, to.falling);
+  compute_factors<Fine>(g, r, s.rest_shear, s.shear_time, kShear, 1, below, to.rising);
 }
 
 /// One component of the forces of springs and quadratic bending that start on a row, each computed
 /// once, from the given factors.
 /// @param component  0 to 2
-template <class Real>
+template <bool Fine, class Real>
 HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int component,
                               const ForceLines<Real>& to) {
   const GridTag<Real> d;
@@ -109,18 +127,17 @@ HWY_INLINE void add_up_forces(const GridView<Real>& g, std::ptrdiff_t r, int com
   const Real* const corner_in = to.corner_in + own;
   Real* const corner_out = to.corner_out + own;
   for (std::ptrdiff_t c = 0; c < g.columns; c += lanes) {
-    const V x0 = hn::LoadU(d, x + c), xr = hn::LoadU(d, x + c + 1),
-            xd = hn::LoadU(d, x + c + pitch), xe = hn::LoadU(d, x + c + pitch + 1);
-    const V along = hn::Sub(xr, x0), down = hn::Sub(xd, x0);
-    const V falling = hn::Sub(xe, x0), rising = hn::Sub(xd, xr);
+    const Differences<Fine, Real> between{x + c, GridView<Real>::kRemainderLine * line};
+    const V along = between(d, 0, 1), down = between(d, 0, pitch);
+    const V falling = between(d, 0, pitch + 1), rising = between(d, 1, pitch);
     const V f_along = hn::LoadU(d, to.along + c), f_down = hn::LoadU(d, to.down + c),
             f_falling = hn::LoadU(d, to.falling + c), f_rising = hn::LoadU(d, to.rising + c);
-    const V twist = hn::Mul(hn::Sub(hn::Sub(xe, xd), along), hn::LoadU(d, to.twist + c));
+    const V twist =
+        hn::Mul(hn::Sub(between(d, pitch, pitch + 1), along), hn::LoadU(d, to.twist + c));
     // The stencils centred one column to the right and one row below.
-    const V bend_right =
-        hn::Mul(hn::Sub(hn::Sub(hn::LoadU(d, x + c + 2), xr), along), hn::LoadU(d, to.bend_u + c));
-    const V bend_below = hn::Mul(hn::Sub(hn::Sub(hn::LoadU(d, x + c + 2 * pitch), xd), down),
-                                 hn::LoadU(d, to.bend_v + c));
+    const V bend_right = hn::Mul(hn::Sub(between(d, 1, 2), along), hn::LoadU(d, to.bend_u + c));
+    const V bend_below =
+        hn::Mul(hn::Sub(between(d, pitch, 2 * pitch), down), hn::LoadU(d, to.bend_v + c));
     const V bend_here = hn::LoadU(d, bent + c);
     hn::StoreU(bend_below, d, bent + c);
 
@@ -164,14 +181,14 @@ HWY_INLINE void clear_lines(const GridView<Real>& g) {
 }
 
 /// Only computes the forces, into the arrays of external forces.
-template <class Real>
-HWY_ATTR void internal_forces(const GridView<Real>& g) {
+template <bool Fine, class Real>
+HWY_INLINE void sum_forces(const GridView<Real>& g) {
   clear_lines(g);
   for (std::ptrdiff_t r = 0; r < g.rows; ++r) {
     const ForceLines<Real> lines(g, r);
-    compute_factors(g, r, lines);
+    compute_factors<Fine>(g, r, lines);
     for (int component = 0; component < 3; ++component) {
-      add_up_forces(g, r, component, lines);
+      add_up_forces<Fine>(g, r, component, lines);
       Real* const to = g.external + (3 * r + component) * g.line;
       visit_forces(g, lines, component, [&](std::ptrdiff_t c, auto force) HWY_ATTR {
         hn::StoreU(force, GridTag<Real>(), to + c);
@@ -218,26 +235,26 @@ HWY_INLINE void move_row(const GridView<Real>& g, std::ptrdiff_t r, int componen
 
 /// Clears the lines of scratch, and fills them with the forces that the rows above carry to row
 /// `first`: springs reach one row down, bending two.
-template <class Real>
-HWY_ATTR void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
+template <bool Fine, class Real>
+HWY_INLINE void carry_forces(const GridView<Real>& g, std::ptrdiff_t first) {
   clear_lines(g);
   for (std::ptrdiff_t r = std::max<std::ptrdiff_t>(0, first - 2); r < first; ++r) {
     const ForceLines<Real> lines(g, r);
-    compute_factors(g, r, lines);
-    for (int component = 0; component < 3; ++component) add_up_forces(g, r, component, lines);
+    compute_factors<Fine>(g, r, lines);
+    for (int component = 0; component < 3; ++component) add_up_forces<Fine>(g, r, component, lines);
   }
 }
 
-/// The whole substep of rows `first` to `last` (exclusive), after `begin_rows` or the rows above.
+/// The whole substep of rows `first` to `last` (exclusive), after `carry_forces` or the rows above.
 /// Accumulates the powers of the external forces at the new velocities in their line.
-template <class Real>
-HWY_ATTR void advance(const GridView<Real>& g, const GridStep<Real>& step, std::ptrdiff_t first,
-                      std::ptrdiff_t last) {
+template <bool Fine, class Real>
+HWY_INLINE void advance_rows(const GridView<Real>& g, const GridStep<Real>& step,
+                             std::ptrdiff_t first, std::ptrdiff_t last) {
   Real* const power = g.scratch + kPowerLine * g.scratch_line();
   for (std::ptrdiff_t r = first; r < last; ++r) {
     const ForceLines<Real> lines(g, r);
-    compute_factors(g, r, lines);
-    for (int component = 0; component < 3; ++component) add_up_forces(g, r, component, lines);
+    compute_factors<Fine>(g, r, lines);
+    for (int component = 0; component < 3; ++component) add_up_forces<Fine>(g, r, component, lines);
     for (int component = 0; component < 3; ++component) {
       if (step.has_external)
         move_row<true>(g, r, component, step, lines, power);
@@ -245,6 +262,22 @@ HWY_ATTR void advance(const GridView<Real>& g, const GridStep<Real>& step, std::
         move_row<false>(g, r, component, step, lines, power);
     }
   }
+}
+
+template <class Real>
+HWY_ATTR void internal_forces(const GridView<Real>& g) {
+  g.fine ? sum_forces<true>(g) : sum_forces<false>(g);
+}
+
+template <class Real>
+HWY_ATTR void begin_rows(const GridView<Real>& g, std::ptrdiff_t first) {
+  g.fine ? carry_forces<true>(g, first) : carry_forces<false>(g, first);
+}
+
+template <class Real>
+HWY_ATTR void advance(const GridView<Real>& g, const GridStep<Real>& step, std::ptrdiff_t first,
+                      std::ptrdiff_t last) {
+  g.fine ? advance_rows<true>(g, step, first, last) : advance_rows<false>(g, step, first, last);
 }
 
 /// Takes over what moved in the model and its velocities, drifts, and stores the places into the

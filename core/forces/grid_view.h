@@ -46,6 +46,9 @@ struct GridView {
   /// Near the places when the tick began [m]. Seen from there they change in finer steps than those
   /// of the model's floats: such steps would shake stiff cloth, and what shakes does not stick.
   Real origin[3] = {};
+  /// Forces see what drifts lost of the places, too. Stiff cloth that sticks, where hardly anything
+  /// moves, would else be shaken by the steps of the places from substep to substep.
+  bool fine = false;
   Real* external = nullptr;   ///< forces of air and slings, three lines per row [N]
   Real* wind = nullptr;       ///< velocity of the air, three lines per row [m/s]
   const Real* odd = nullptr;  ///< by column: 1 for odd columns, else 0
