@@ -17,8 +17,7 @@
 namespace weft {
 namespace {
 
-/// Sum of the powers that a pass has accumulated; clears their line for the next pass. The line
-/// stays zero without external forces.
+/// Sum of the powers that a pass has added up; clears their line, which is 0 without such forces.
 template <class Real>
 double take_power(const GridView<Real>& view, bool has_external) {
   if (!has_external) return 0;

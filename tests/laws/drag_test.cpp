@@ -197,9 +197,7 @@ TEST_CASE("under any drag a sliding sheet tells friction mu times its weight, to
   CHECK(flows.drag - start.drag == Approx(drag).epsilon(0.02));
 }
 
-TEST_CASE(
-    "under drag a hand's work is its force along its way, and less drag the energy of what it "
-    "lifts") {
+TEST_CASE("under drag a hand's work is its force along its way, and drag and its load get it") {
   const Way way = GENERATE(Way{50, 3}, Way{200, 24});
   CAPTURE(way.drag, way.substeps);
   WorldDef def = sheet_on_ground(way);
