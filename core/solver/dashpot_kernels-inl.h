@@ -28,7 +28,8 @@ template <auto Value>
 using Constant = std::integral_constant<decltype(Value), Value>;
 
 /// Forces on the particles of a batch, by slot and lane: as quads of triangles, else component by
-/// component. They begin as whatever was there.
+/// component. Not initialised: `set` comes first
+/// for all slots and lanes.
 template <class Real, bool OfTriangles>
 struct BatchForces {
   using Family = DashpotFamily<Real>;

@@ -112,8 +112,7 @@ void predict(Tick<Real>& tick) {
   }
 }
 
-/// Relaxes `count` rigid springs: first, first + step, ... Their ends are at x +
-/// displacement.
+/// Relaxes `count` rigid springs: first, first + step, ... Ends are at x + displacement.
 template <class Real>
 void sweep_rigid(Tick<Real>& tick, std::size_t first, std::size_t count, std::ptrdiff_t step) {
   const Vec3Array<Real>& x = tick.state.x;

@@ -14,7 +14,8 @@ struct Kick {
   Real keep, scaled_dt;
   double seconds;  ///< for which the forces act [s]
   /// What a force gives in that time over what is left of it in the velocity, `seconds` over
-  /// `scaled_dt` [1]: drag has taken the rest. So an impulse after the kick is that of a force.
+  /// `scaled_dt` [1]: drag has taken the rest. So an impulse J that velocities get after the kick
+  /// is that of a force whose own impulse is J times this.
   Real force_ratio;
 };
 

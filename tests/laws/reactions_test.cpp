@@ -204,6 +204,36 @@ TEST_CASE("of two sheets the lower one carries the upper one's weight at each ti
   }
 }
 
+TEST_CASE(
+    "sheets nearer to the ground and each other than their thickness come apart at their weight") {
+  const double thickness = GENERATE(0.004, 0.01);
+  CAPTURE(thickness);
+  WorldDef def = test::empty_world(test::flat_cloth(13, 13, 0.4, 0.4));
+  def.environment.gravity = Vec3d(0, -kGravity, 0);
+  def.environment.damping = 0.5;
+  ClothDef& lower = def.cloths[0];
+  lower.fabric = fabric_presets().front().fabric;
+  lower.fabric.thickness = thickness;
+  lower.origin[1] = 0.3 * thickness;
+  def.cloths.push_back(lower);
+  def.cloths[1].name = "upper";
+  def.cloths[1].origin[1] = 0.57 * thickness;
+  def.contact.seed.self = SelfContact::guard;
+  def.colliders = {{"ground", PlaneDef{}}};
+  World<float> world(def);
+  world.measure_forces(true);
+  test::advance(world, 2);
+  for (int t = 0; t < 60; ++t) {
+    world.step();
+    REQUIRE(-world.reactions()->colliders[0][1] == Approx(weight_of(world)).epsilon(0.02));
+  }
+  const auto upper = static_cast<std::size_t>(world.model().parts[1].particles.first);
+  for (std::size_t i = 0; i < upper; ++i) {
+    REQUIRE(static_cast<double>(world.state().x[i][1]) > 0.98 * thickness);
+    REQUIRE(static_cast<double>(world.state().x[upper + i][1]) > 1.85 * thickness);
+  }
+}
+
 TEST_CASE("a sheet that falls on a held one gets in each tick what is told that they press with") {
   WorldDef def = sheet_at(0);
   def.environment.damping = 0;

@@ -105,7 +105,8 @@ void clear_impulses(ColliderState& state) {
 
 std::array<double, 2> mean_pushes(const Pinch& pinch, double seconds) {
   assert(seconds > 0);
-  return {pinch.pushes[0] / seconds, pinch.pushes[1] / seconds};
+  // What merely rubs pushes by rounding, to either side.
+  return {std::max(0.0, pinch.pushes[0]) / seconds, std::max(0.0, pinch.pushes[1]) / seconds};
 }
 
 void take_back_motion(ColliderStates& states) {

@@ -26,10 +26,11 @@ struct Pinch {
 /// layer on another object.
 struct Press {
   Vec3d direction = Vec3d::Zero();  ///< unit; zero: it does not press
-  double hold = 0;                  ///< force with which it presses in all [N]
-  double squeeze = 0;               ///< its part that the cloth does not resist yet [N]
-  Index other = kNone;              ///< the object that it presses on; kNone: the other jaw
-  int parts = 1;                    ///< jaws of a gripper that press so, each with these forces
+  double hold = 0;                  ///< force with which it presses in all; of one side of a
+  ///< layer the normal force there [N]
+  double squeeze = 0;   ///< its part that the cloth does not resist yet [N]
+  Index other = kNone;  ///< the object that it presses on; kNone: the other jaw
+  int parts = 1;        ///< jaws of a gripper that press so, each with these forces
   /// What the rows of a pressed layer push with besides the squeeze, on the presser's side and on
   /// the other one, mean of the last tick [N].
   std::array<double, 2> pushes = {0, 0};
@@ -127,7 +128,7 @@ ColliderStates initial_states(const std::vector<ColliderDef>& colliders);
 /// Forgets what the cloth has been given in the tick.
 void clear_impulses(ColliderState& state);
 
-/// Mean forces of the rows of what is pinched, on both sides [N].
+/// Mean forces of the rows of what is pinched, on both sides, not negative [N].
 std::array<double, 2> mean_pushes(const Pinch& pinch, double seconds);
 
 /// Returns to the start of the running tick.

@@ -56,7 +56,8 @@ void log_hold(ObjectCertificate<Real>& c, std::size_t i, const Vec3<Real>& befor
 }
 
 /// Holds particles that would go beyond the reach within which the planes are all that matters. Not
-/// moving is always allowed.
+/// moving is always allowed. Rows are made anew then: what another cloth pushes would else stand at
+/// its reach for ever, as it is pushed after its travel was looked at.
 template <class Real>
 void hold_within_reach(ObjectCertificate<Real>& c) {
   for (std::size_t i = 0; i < c.state.x.size(); ++i) {
@@ -65,6 +66,7 @@ void hold_within_reach(ObjectCertificate<Real>& c) {
     if ((end - c.reach.x[i]).squaredNorm() <= reach * std::abs(reach)) continue;
     const Vec3<Real> before = c.state.v[i];
     c.state.v[i].setZero();
+    c.reach.made = false;
     if (c.log.wanted()) log_hold(c, i, before);
   }
 }

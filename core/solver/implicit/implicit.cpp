@@ -20,11 +20,11 @@ namespace {
 template <class Real>
 void check_history(const ClothState<Real>& state, double dt, double tick,
                    ImplicitWorkspace<Real>& work) {
-  assert(work.history.size() == state.x.size() && work.end_x.size() == state.x.size());
+  assert(work.history.size() == state.x.size() && work.last_end.x.size() == state.x.size());
   const bool same_step = work.last_dt == dt;
   bool all_same = same_step;
   for (std::size_t i = 0; i < state.x.size(); ++i) {
-    const bool same = state.x[i] == work.end_x[i] && state.v[i] == work.end_v[i];
+    const bool same = state.x[i] == work.last_end.x[i] && state.v[i] == work.last_end.v[i];
     if (!same_step || !same || !(state.inverse_mass[i] > 0)) work.history[i] = 0;
     all_same = all_same && same;
   }
@@ -113,8 +113,8 @@ bool solve_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double&
   assert(pieces >= 1 && begin < end);
   ImplicitWorkspace<Real>& work = step.work;
   ClothState<Real>& state = step.state;
-  work.start_x = state.x;
-  work.start_v = state.v;
+  work.start.x = state.x;
+  work.start.v = state.v;
   const Real whole = step.dt;
   step.dt = whole / static_cast<Real>(pieces);
   step.damped = true;
@@ -133,9 +133,9 @@ bool solve_in_pieces(Step<Real>& step, Real begin, Real end, int pieces, double&
     state.v = work.v;
   }
   for (std::size_t i = 0; i < state.x.size(); ++i)
-    work.displacement[i] = work.x[i] - work.start_x[i];
-  state.x = work.start_x;
-  state.v = work.start_v;
+    work.displacement[i] = work.x[i] - work.start.x[i];
+  state.x = work.start.x;
+  state.v = work.start.v;
   step.dt = whole;
   return solved;
 }
@@ -232,8 +232,9 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
       systems.push_back(ElementSystem<Real>(model, part));
     longest = std::max(longest, std::visit([](const auto& s) { return s.size(); }, systems.back()));
   }
-  for (Vec3Array<Real>* array : {&displacement, &x, &v, &start_near, &near, &force, &air,
-                                 &last_displacement, &last_v, &end_x, &end_v, &start_x, &start_v})
+  for (Vec3Array<Real>* array :
+       {&displacement, &x, &v, &start_near, &near, &force, &air, &last_displacement, &last_v,
+        &last_end.x, &last_end.v, &start.x, &start.v})
     array->assign(model.mass.size(), Vec3<Real>::Zero());
   history.assign(model.mass.size(), 0);
   inertia.assign(model.mass.size(), Real(0));
@@ -258,9 +259,9 @@ void ImplicitWorkspace<Real>::prepare(const ClothModel<Real>& model) {
 
 template <class Real>
 void ImplicitWorkspace<Real>::take_over(const Vec3Array<Real>& velocities) {
-  assert(velocities.size() == end_v.size());
-  for (std::size_t i = 0; i < end_v.size(); ++i) last_v[i] += velocities[i] - end_v[i];
-  end_v = velocities;
+  assert(velocities.size() == last_end.v.size());
+  for (std::size_t i = 0; i < last_end.v.size(); ++i) last_v[i] += velocities[i] - last_end.v[i];
+  last_end.v = velocities;
 }
 
 template <class Real>
@@ -316,8 +317,8 @@ AdvanceResult advance_implicit(const ClothModel<Real>& model,
     }
     if (!collision.empty()) reading = energies_at(step, state.x, state.v);
   }
-  work.end_x = state.x;
-  work.end_v = state.v;
+  work.last_end.x = state.x;
+  work.last_end.v = state.v;
   result.after = reading.energies;
   result.largest_strain = reading.largest_strain;
   return result;

@@ -49,6 +49,12 @@ struct HandTerm {
   Vec3d given = Vec3d::Zero();                     ///< to the cloth in this substep [N s]
 };
 
+/// Positions [m] and velocities [m/s] of one instant.
+template <class Real>
+struct Instant {
+  Vec3Array<Real> x, v;
+};
+
 /// Arrays that live across ticks.
 template <class Real>
 struct ImplicitWorkspace {
@@ -60,8 +66,8 @@ struct ImplicitWorkspace {
   Vec3Array<Real> start_near, near;           ///< positions at start and end from near the part [m]
   Vec3Array<Real> force, air;                 ///< [N]
   Vec3Array<Real> last_displacement, last_v;  ///< of the previous substep
-  Vec3Array<Real> end_x, end_v;               ///< at the end of the previous tick
-  Vec3Array<Real> start_x, start_v;           ///< of a divided substep
+  Instant<Real> last_end;                     ///< at the end of the previous tick
+  Instant<Real> start;                        ///< of a divided substep
   std::vector<char> history;  ///< per particle: whether last_displacement and last_v count
   std::vector<Real> inertia;  ///< see NewtonPoint
   std::vector<SymmetricBlock<Real>> air_blocks;  ///< see NewtonPoint
