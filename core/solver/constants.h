@@ -66,8 +66,8 @@ inline constexpr int kMostDashpotStages = 1000;
 inline constexpr std::size_t kDashpotBandParticles = 2048, kMostDashpotBands = 8;
 
 /// Time of a stage for each slot of a group, in that of an update of a particle by the springs of a
-/// grid [1]: measured on one processor, for meshes; grids take less. Larger: more damped fabrics are
-/// refused. Smaller: ticks may take longer than their cost said.
+/// grid [1]: measured on one processor, for meshes; grids take less. Larger: more damped fabrics
+/// are refused. Smaller: ticks may take longer than their cost said.
 inline constexpr double kDashpotUpdates = 0.25;
 
 /// Batches of stencils that all bands have together at most, over those of the cloth [1]: what is
