@@ -36,16 +36,6 @@ HWY_INLINE void kick_particles(D d, const KickLaw<Real>& law,
   store_particles(d, load_particles(d, from + 3 * i) * keep + change, to + 3 * i);
 }
 
-/// Calls body(d, i) for whole vectors of particles, and then with one lane for the remaining ones.
-template <class Real, std::size_t Lanes = 16, class Body>
-HWY_INLINE void for_each_particle(std::size_t count, Body&& body) {
-  const hn::CappedTag<Real, Lanes> wide;
-  const hn::CappedTag<Real, 1> single;
-  std::size_t i = 0;
-  for (; i + hn::Lanes(wide) <= count; i += hn::Lanes(wide)) body(wide, i);
-  for (; i < count; ++i) body(single, i);
-}
-
 }  // namespace HWY_NAMESPACE
 }  // namespace weft
 HWY_AFTER_NAMESPACE();

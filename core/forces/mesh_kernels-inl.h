@@ -286,7 +286,7 @@ HWY_INLINE void kick_blocks(const MeshView<Real>& mesh, const KickLaw<Real>& law
                             const KickedParticles<Real>& particles, const Real* x, Real* v) {
   for_each_block<Remembered>(
       mesh, x, v, [&](std::size_t first, std::size_t count, const Real* force) HWY_ATTR {
-        for_each_particle<Real, kMeshGroup>(count, [&](auto d, std::size_t i) HWY_ATTR {
+        for_each_vector<Real, kMeshGroup>(count, [&](auto d, std::size_t i) HWY_ATTR {
           Triple<hn::Vec<decltype(d)>> f;
           auto spare = hn::Zero(d);
           hn::LoadInterleaved4(d, force + 4 * i, f.x, f.y, f.z, spare);

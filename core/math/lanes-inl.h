@@ -19,6 +19,18 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
+/// Calls body(d, n) for elements from number n on, as many as a vector has lanes, and then, with
+/// one lane, for each of the remaining ones.
+/// @tparam Lanes  of a vector at most
+template <class Real, std::size_t Lanes = 16, class Body>
+HWY_INLINE void for_each_vector(std::size_t count, Body&& body) {
+  const hn::CappedTag<Real, Lanes> wide;
+  const hn::CappedTag<Real, 1> single;
+  std::size_t n = 0;
+  for (; n + hn::Lanes(wide) <= count; n += hn::Lanes(wide)) body(wide, n);
+  for (; n < count; ++n) body(single, n);
+}
+
 /// a b + c with a single rounding. Without such an instruction it is computed lane by lane, so that
 /// the bits are the same everywhere.
 template <class D, class V = hn::Vec<D>>

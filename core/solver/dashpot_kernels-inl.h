@@ -15,6 +15,7 @@
 #include <hwy/highway.h>
 
 #include "core/math/kernels.h"
+#include "core/math/lanes-inl.h"
 #include "core/math/quads-inl.h"
 #include "core/solver/constants.h"
 #include "core/solver/dashpot_kernels.h"
@@ -28,8 +29,7 @@ template <auto Value>
 using Constant = std::integral_constant<decltype(Value), Value>;
 
 /// Forces on the particles of a batch, by slot and lane: as quads of triangles, else component by
-/// component. Not initialised: `set` comes first
-/// for all slots and lanes.
+/// component. Not initialised: `set` comes first for all slots and lanes.
 template <class Real, bool OfTriangles>
 struct BatchForces {
   using Family = DashpotFamily<Real>;
@@ -318,19 +318,10 @@ HWY_ATTR void multiply(const DashpotRun& run, const Real* v, std::size_t first, 
   });
 }
 
-/// Calls body(d, n) for whole vectors and then, with one lane, for the remaining numbers.
-template <class Real, class Body>
-HWY_INLINE void for_numbers(const NumberRange& range, Body&& body) {
-  const hn::ScalableTag<Real> wide;
-  const hn::CappedTag<Real, 1> single;
-  std::size_t n = range.first;
-  for (; n + hn::Lanes(wide) <= range.end; n += hn::Lanes(wide)) body(wide, n);
-  for (; n < range.end; ++n) body(single, n);
-}
-
 template <class Real>
 HWY_ATTR void open_stages(const NumberRange& range, Real by_start, const StageNumbers<Real>& of) {
-  for_numbers<Real>(range, [&](auto d, std::size_t n) HWY_ATTR {
+  for_each_vector<Real>(range.end - range.first, [&](auto d, std::size_t k) HWY_ATTR {
+    const std::size_t n = range.first + k;
     const auto now = hn::Mul(hn::LoadU(d, of.start + n), hn::Set(d, by_start));
     hn::StoreU(now, d, of.now + n);
     hn::StoreU(hn::Mul(now, hn::LoadU(d, of.inverse_mass + n)), d, of.next_change + n);
@@ -340,7 +331,8 @@ HWY_ATTR void open_stages(const NumberRange& range, Real by_start, const StageNu
 template <class Real>
 HWY_ATTR void advance_stage(const NumberRange& range, const StageFactors<Real>& by,
                             const StageNumbers<Real>& of) {
-  for_numbers<Real>(range, [&](auto d, std::size_t n) HWY_ATTR {
+  for_each_vector<Real>(range.end - range.first, [&](auto d, std::size_t k) HWY_ATTR {
+    const std::size_t n = range.first + k;
     auto next = hn::Mul(hn::LoadU(d, of.now + n), hn::Set(d, by.now));
     next = hn::Add(next, hn::Mul(hn::LoadU(d, of.before + n), hn::Set(d, by.before)));
     next = hn::Add(next, hn::Mul(hn::LoadU(d, of.product + n), hn::Set(d, by.product)));

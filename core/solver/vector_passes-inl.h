@@ -14,6 +14,7 @@
 #include "core/forces/kick-inl.h"
 #include "core/math/drift-inl.h"
 #include "core/math/kernels.h"
+#include "core/math/lanes-inl.h"
 #include "core/solver/vector_passes.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -21,26 +22,16 @@ namespace weft {
 namespace HWY_NAMESPACE {
 namespace hn = hwy::HWY_NAMESPACE;
 
-/// Calls body(d, n) for whole vectors and then, with one lane, for the remaining numbers.
-template <class Real, class Body>
-HWY_INLINE void for_each_number(std::size_t count, Body&& body) {
-  const hn::ScalableTag<Real> wide;
-  const hn::CappedTag<Real, 1> single;
-  std::size_t n = 0;
-  for (; n + hn::Lanes(wide) <= count; n += hn::Lanes(wide)) body(wide, n);
-  for (; n < count; ++n) body(single, n);
-}
-
 template <class Real>
 HWY_ATTR void kick(const KickPass<Real>& p) {
-  for_each_particle<Real>(p.count, [&](auto d, std::size_t i) HWY_ATTR {
+  for_each_vector<Real>(p.count, [&](auto d, std::size_t i) HWY_ATTR {
     kick_particles(d, p.law, p.particles, i, load_particles(d, p.internal + 3 * i), p.from, p.to);
   });
 }
 
 template <class Real>
 HWY_ATTR void drift(std::size_t count, const Real* v, Real dt, Real* x, Real* remainder) {
-  for_each_number<Real>(count, [&](auto d, std::size_t n) HWY_ATTR {
+  for_each_vector<Real>(count, [&](auto d, std::size_t n) HWY_ATTR {
     auto lost = hn::LoadU(d, remainder + n);
     hn::StoreU(drifted(d, hn::LoadU(d, x + n), hn::LoadU(d, v + n), hn::Set(d, dt), lost), d,
                x + n);

@@ -69,6 +69,23 @@ Vec3d sum_between_cloths(const World<double>& world) {
   return sum;
 }
 
+/// Four particles of that sheet, without ground.
+WorldDef free_patch(const Way& way) {
+  WorldDef def = sheet_on_ground(way);
+  def.colliders.clear();
+  def.cloths[0].rows = def.cloths[0].columns = 2;
+  def.cloths[0].width = def.cloths[0].height = 0.1;
+  return def;
+}
+
+GrabDef hand_at_a_corner(const World<double>& world) {
+  GrabDef hand;
+  hand.barycentric = {1, 0, 0};
+  hand.radius = 0;
+  hand.target = world.state().x[static_cast<std::size_t>(world.model().triangles[0][0])];
+  return hand;
+}
+
 }  // namespace
 
 TEST_CASE("under any drag a sheet at rest tells its weight to the ground, to 1e-5") {
@@ -131,16 +148,9 @@ TEST_CASE("under any drag a box that lifts a sheet evenly is told its weight and
 TEST_CASE("under any drag a hand tells the weight that it holds at rest, to 1e-5") {
   const Way way = GENERATE(Way{2, 3}, Way{50, 3}, Way{200, 6}, Way{200, 24});
   CAPTURE(way.drag, way.substeps);
-  WorldDef def = sheet_on_ground(way);
-  def.colliders.clear();
-  def.cloths[0].rows = def.cloths[0].columns = 2;
-  def.cloths[0].width = def.cloths[0].height = 0.1;
-  World<double> world(def);
-  GrabDef hand;
-  hand.barycentric = {1, 0, 0};
-  hand.radius = 0;
+  World<double> world(free_patch(way));
+  GrabDef hand = hand_at_a_corner(world);
   hand.stiffness = 10;
-  hand.target = world.state().x[static_cast<std::size_t>(world.model().triangles[0][0])];
   world.grab(hand);
   test::advance(world, 30 + way.drag / 2);
   CHECK(world.grabs().list[0].told.y() == Approx(weight_of(world)).epsilon(1e-5));
@@ -200,15 +210,8 @@ TEST_CASE("under any drag a sliding sheet tells friction mu times its weight, to
 TEST_CASE("under drag a hand's work is its force along its way, and drag and its load get it") {
   const Way way = GENERATE(Way{50, 3}, Way{200, 24});
   CAPTURE(way.drag, way.substeps);
-  WorldDef def = sheet_on_ground(way);
-  def.colliders.clear();
-  def.cloths[0].rows = def.cloths[0].columns = 2;
-  def.cloths[0].width = def.cloths[0].height = 0.1;
-  World<double> world(def);
-  GrabDef hand;
-  hand.barycentric = {1, 0, 0};
-  hand.radius = 0;
-  hand.target = world.state().x[static_cast<std::size_t>(world.model().triangles[0][0])];
+  World<double> world(free_patch(way));
+  const GrabDef hand = hand_at_a_corner(world);
   const GrabId id = world.grab(hand);
   test::advance(world, 5 + way.drag / 10);
   world.measure_energy(true);

@@ -49,6 +49,10 @@ struct MovingIn {
       state.x[i] = Vec3d(std::sin(place[0]), std::cos(place[0]), place[1]).template cast<Real>();
     }
   }
+  void shake(SeededRandom& random) {
+    state.x = test::shaken(model, 0.001, random);
+    for (Vec3<Real>& v : state.v) v = random.vector(3).template cast<Real>();
+  }
   void act(double seconds, Executor* executor = nullptr) {
     Profile profile;
     dashpots.act(model, seconds, state, nullptr, executor, profile);
@@ -164,8 +168,7 @@ TEMPLATE_TEST_CASE("a pass leaves the same bits with one and two threads", "", f
     sheet.fabric.bending_warp = sheet.fabric.bending_weft = 1e-3;
     sheet.fabric.bending_damping = 0.01;
     MovingIn<TestType> one(sheet);
-    one.state.x = test::shaken(one.model, 0.001, random);
-    for (auto& v : one.state.v) v = random.vector(3).template cast<TestType>();
+    one.shake(random);
     MovingIn<TestType> two = one;
     const int shared = two_threads.shared();
     for (int pass = 0; pass < 2; ++pass) {
@@ -185,8 +188,7 @@ TEMPLATE_TEST_CASE("every instruction set leaves the same bits after a pass", ""
     sheet.fabric.bending_warp = sheet.fabric.bending_weft = 1e-2;
     sheet.fabric.bending_damping = 0.1;
     MovingIn<TestType> cloth(sheet);
-    cloth.state.x = test::shaken(cloth.model, 0.001, random);
-    for (auto& v : cloth.state.v) v = random.vector(3).template cast<TestType>();
+    cloth.shake(random);
     const MovingIn<TestType> start = cloth;
     cloth.act(1.0 / 60);
     test::for_each_target([&] {
