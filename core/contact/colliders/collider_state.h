@@ -26,8 +26,8 @@ struct Pinch {
 /// layer on another object.
 struct Press {
   Vec3d direction = Vec3d::Zero();  ///< unit; zero: it does not press
-  double hold = 0;                  ///< force with which it presses in all; of one side of a
-  ///< layer the normal force there [N]
+  /// Force with which it presses in all; of one side of a layer the normal force there [N].
+  double hold = 0;
   double squeeze = 0;   ///< its part that the cloth does not resist yet [N]
   Index other = kNone;  ///< the object that it presses on; kNone: the other jaw
   int parts = 1;        ///< jaws of a gripper that press so, each with these forces
