@@ -203,6 +203,7 @@ void Contact<Real>::resolve(ClothState<Real>& state, Real dt, Profile& profile,
     if (motion_.any_press) share_hold(solve, shapes_, settled_ ? dt / 2 : dt);
     solve_rows(solve, dt, guard);
     bounce(solve, guard);
+    book_reactions(state.x, rows_, motion_, log_);
     profile[Stage::friction].work += solve.friction_evaluations;
     if (guard) guard->push_apart(state);
     certify_drift(state, dt, guard != nullptr);
@@ -265,6 +266,7 @@ void Contact<Real>::settle(ClothState<Real>& state, Real dt, Profile& profile,
       sweep_rows(solve, !changed);
     }
   }
+  book_reactions(state.x, rows_, motion_, log_);
   profile[Stage::friction].work += solve.friction_evaluations;
 }
 

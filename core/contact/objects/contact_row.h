@@ -104,6 +104,7 @@ struct MovingRow {
   std::size_t side = 0;   ///< of that layer: 0 next to that object, 1 behind it
   Real grip = 0;  ///< friction that the jaw, and what pushes besides, allow in this step [m/s]
   Vec3<Real> rubbed = Vec3<Real>::Zero();  ///< the part of it that acts [m/s]
+  Vec3d given = Vec3d::Zero();  ///< to the row's point in this step, and not booked yet [m/s]
 };
 
 /// What a row has besides whose point hits its object in this step and shall bounce.

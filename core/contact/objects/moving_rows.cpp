@@ -8,12 +8,16 @@
 
 namespace weft {
 
+namespace {
+
+/// @param point   of the row [m]
+/// @param normal  of the row
 template <class Real>
 void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Vec3<Real>& normal,
-                   const Vec3<Real>& change, ObjectMotion<Real>& motion) {
+                   ObjectMotion<Real>& motion) {
   assert(motion.colliders && row.mobility > 0);
   ColliderState& state = (*motion.colliders)[row.collider];
-  const Vec3d impulse = (change / row.mobility).template cast<double>();
+  const Vec3d impulse = row.given / static_cast<double>(row.mobility);
   const Vec3d along = normal.template cast<double>();
   state.impulse += impulse;
   state.pushed += along * along.dot(impulse);
@@ -24,6 +28,20 @@ void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Ve
   motion.work += impulse.dot(row.surface.template cast<double>()) * motion.force_ratio;
   if (row.presser != kNone)
     (*motion.colliders)[at_index(row.presser)].pinch.pushes[row.side] += along.dot(impulse);
+}
+
+}  // namespace
+
+template <class Real>
+void book_reactions(const Vec3Array<Real>& x, ObjectRows<Real>& rows, ObjectMotion<Real>& motion,
+                    ContactLog& log) {
+  for (MovingRow<Real>& moving : rows.moving) {
+    if (moving.given.isZero(0)) continue;
+    const ContactRow<Real>& row = rows.all[moving.row];
+    take_reaction(moving, weighted(row, x), row.normal, motion);
+    if (log.wanted()) log.add(rows.all, moving.row, moving.given);
+    moving.given.setZero();
+  }
 }
 
 template <class Real>
@@ -41,6 +59,6 @@ void turn_with_objects(const ObjectShapes<Real>& shapes, ContactLog& log, Object
   }
 }
 
-WEFT_INSTANTIATE_FUNCTIONS(take_reaction, turn_with_objects)
+WEFT_INSTANTIATE_FUNCTIONS(book_reactions, turn_with_objects)
 
 }  // namespace weft

@@ -42,13 +42,12 @@ Real height_after(const ObjectRows<Real>& rows, const ObjectShapes<Real>& shapes
   return row.normal.dot(end) - row.offset;
 }
 
-/// Books what an object gave to the cloth: impulse and work.
-/// @param point   of the row [m]
-/// @param normal  of the row
-/// @param change  of its velocity [m/s]
+/// Books what each object that moves has given to the cloth in a step: impulse and work. Call it
+/// once the rows are solved: sweeps give some of them a part each, hundreds of times in a tick.
+/// @param x  positions, as the rows were solved at [m]
 template <class Real>
-void take_reaction(const MovingRow<Real>& row, const Vec3<Real>& point, const Vec3<Real>& normal,
-                   const Vec3<Real>& change, ObjectMotion<Real>& motion);
+void book_reactions(const Vec3Array<Real>& x, ObjectRows<Real>& rows, ObjectMotion<Real>& motion,
+                    ContactLog& log);
 
 /// Turns the rows that go with objects, after these have moved.
 template <class Real>

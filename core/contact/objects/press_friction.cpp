@@ -196,8 +196,7 @@ void begin_slip(const std::vector<GrippedRow>& gripped, const ObjectShapes<Real>
     moving.rubbed = slip * (part * moving.grip / speed);
     share_out(row, moving.rubbed, solve.state.v);
     solve.response.pushed.push_back(moving.row);
-    take_reaction(moving, point, row.normal, moving.rubbed, solve.motion);
-    if (solve.log.wanted()) solve.log.add(solve.rows.all, moving.row, moving.rubbed);
+    moving.given += moving.rubbed.template cast<double>();
   }
 }
 

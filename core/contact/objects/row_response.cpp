@@ -131,9 +131,9 @@ Vec3<Real> respond(ObjectSolve<Real>& solve, std::size_t r, const Vec3<Real>& v,
   const Vec3<Real> before = solve.state.v[at_index(row.particle[0])];
   share_out(row, change, solve.state.v);
   solve.response.pushed.push_back(r);
-  if (moving)
-    take_reaction(*moving, weighted(row, solve.state.x), row.normal, change, solve.motion);
-  if (solve.log.wanted()) {
+  if (moving) {
+    moving->given += change.template cast<double>();
+  } else if (solve.log.wanted()) {
     // What the velocity has got, rounded as it is, is what lone rows processed apart tell.
     const Vec3<Real> got = solve.state.v[at_index(row.particle[0])] - before;
     solve.log.add(solve.rows.all, r, row.count == 1 ? got : change);
