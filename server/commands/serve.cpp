@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <malloc.h>
 #include <memory>
 #include <optional>
 #include <random>
@@ -84,6 +85,13 @@ void allow_sockets(int connections) {
   limit.rlim_cur = std::min(limit.rlim_max, wanted);
   if (::setrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur < wanted)
     spdlog::warn("the system allows {} open files, fewer than --max-connections", limit.rlim_cur);
+}
+
+/// Lets arrays of large scenes go back to the system as these end. Left to itself the allocator
+/// keeps them: the size from which it maps each apart grows with what is freed, up to 32 MiB.
+void map_large_arrays() {
+  constexpr int kMapped = 256 << 10;  // [bytes] more than most frames, which come and go
+  ::mallopt(M_MMAP_THRESHOLD, kMapped);
 }
 
 RoomOptions room_options(const ServerOptions& options, const SceneLibrary& library) {
@@ -223,6 +231,7 @@ void listen(std::optional<Network>& network, asio::io_context& io, ServiceContex
 int serve(const ServerOptions& options) {
   validate(options);
   allow_sockets(options.limits.connections);
+  map_large_arrays();
   Metrics metrics;
   Tokens tokens;
   read_tokens(options, tokens);

@@ -81,14 +81,36 @@ class LargeMesh(SocketTest):
             self.assertEqual((await viewer.ask("hash"))["op"], "result")
 
 
-class SlowDownloads(SocketTest):
+class Memory(SocketTest):
     options = ("--paused",)
-    COUNT = 30
 
     def memory(self):
         """What the server has of it [bytes]."""
         status = Path(f"/proc/{self.server.process.pid}/status").read_text(encoding="utf-8")
         return 1024 * int(re.search(r"VmRSS:\s*(\d+) kB", status)[1])
+
+
+class LargeScenes(Memory):
+    async def test_most_of_the_memory_of_scenes_that_have_ended_goes_back(self):
+        viewer = await self.viewer()
+        fabric = {"stretch_warp": 1, "stretch_weft": 1, "shear": 0, "bending_warp": 0, "bending_weft": 0}
+        scene = {"cloths": [{"rows": 450, "columns": 440, "width": 20, "height": 20, "fabric": fabric}]}
+        before = self.memory()
+        for _ in range(2):
+            self.assertEqual((await viewer.ask("load", scene=scene))["op"], "result")
+            await viewer.ask("save", name="here")
+            self.assertEqual((await viewer.ask("fork", name="mine"))["op"], "result")
+            most = self.memory()
+            await viewer.ask("close_room", name="mine")
+            await viewer.ask("load", scene="default")
+        deadline = asyncio.get_running_loop().time() + PATIENCE
+        while self.memory() - before > (most - before) / 2 and asyncio.get_running_loop().time() < deadline:
+            await asyncio.sleep(0.1)
+        self.assertLess(self.memory() - before, (most - before) / 2)
+
+
+class SlowDownloads(Memory):
+    COUNT = 30
 
     def begin(self, url):
         """A download of which its client has read the head alone: that, and the connection."""
