@@ -36,8 +36,8 @@ struct Building {
 };
 
 /// The one order of all viewers' commands: what was done, what is being done, and what waits, as it
-/// arrived. Commands of one viewer never overtake each other, except a pause that ends its own
-/// `advance`, behind which the others wait.
+/// arrived. Commands of one viewer never overtake each other: a pause behind others that wait for
+/// their viewer's `advance` ends that at once, and is done after them.
 struct Order {
   CommandLog log;
   std::optional<Advance> advance;
@@ -61,7 +61,7 @@ bool is_about_rooms(const proto::Command& command);
 /// viewer: a scene under construction.
 bool is_for_its_viewer_alone(const Inbound& item);
 
-/// Whether it is a pause by the viewer of the running `advance`, which waits for nothing.
+/// Whether it is a pause by the viewer of the running `advance`, which does not wait for its end.
 bool ends_its_advance(const Order& order, const Inbound& item);
 /// Whether an `advance` or a `load` holds it up. These hold up only the later commands of their own
 /// viewer, and a load other loads; all other commands run between the ticks of an `advance`.

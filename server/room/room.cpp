@@ -90,8 +90,7 @@ void Room::take_now(Inbound item) {
     admit(found->second, *grant);
     return on_finished(item.viewer);
   }
-  // A pause that ends its viewer's advance overtakes what waits behind that.
-  found->second.applied = std::max(found->second.applied, item.number);
+  found->second.applied = item.number;
   if (const auto* request = std::get_if<proto::Request>(&item.what)) {
     const bool charges = !is_alone();
     const double before = charges ? options_.cpu_clock() : 0;

@@ -22,6 +22,7 @@ void Room::take_meanwhile(Inbound item) {
   const bool waits = stands_next && is<proto::Hash>(item);
   if (tick_.runs && may_run && !waits && is_beside_the_cloth(item))
     return take_now(std::move(item));
+  if (ends_its_advance(order_, item)) order_.advance->paused = true;
   tick_.replaced = tick_.replaced || (may_run && replaces_state(item));
   add_waiting(order_, std::move(item));
 }
@@ -35,7 +36,6 @@ bool Room::replaces_state(const Inbound& item) const {
 
 /// Whether it is its viewer's turn during a tick.
 bool Room::may_run_meanwhile(const Inbound& item) const {
-  if (ends_its_advance(order_, item)) return true;
   return !has_waiting(order_, item.viewer) && !must_wait(item);
 }
 
@@ -69,7 +69,13 @@ void Room::work_off() {
       continue;
     }
     const bool behind = std::find(held.begin(), held.end(), item.viewer) != held.end();
-    if ((behind && !ends_its_advance(order_, item)) || must_wait(item)) {
+    if (ends_its_advance(order_, item) && (behind || must_wait(item))) {
+      end_paused_advance();
+      k = 0;  // what waited for that goes first
+      held.clear();
+      continue;
+    }
+    if (behind || must_wait(item)) {
       held.push_back(item.viewer);
       ++k;
       continue;

@@ -195,6 +195,37 @@ TEST_CASE("a pause ends an advance of its viewer although other commands wait be
   CHECK(t.output.last("result", 3)["op"] == "result");
 }
 
+TEST_CASE("a pause holds whatever its viewer has sent before it, and waits behind its advance") {
+  TestRoom t;
+  t.join(1);
+  t.tell(1, R"({"op":"advance","id":1,"n":100000})");
+  t.room->advance_until(0);
+  t.tell(1, R"({"op":"resume","id":2})");
+  t.tell(1, R"({"op":"advance","id":3,"n":100000})");
+  t.tell(1, R"({"op":"pause","id":4})");
+  t.room->finish_turn();
+  CHECK(t.output.last("error", 1)["code"] == "interrupted");
+  CHECK(t.output.last("result", 2)["paused"] == false);
+  CHECK(t.output.last("error", 3)["op"] == "error");  // the room runs, or it was interrupted
+  CHECK(t.output.last("result", 4)["paused"] == true);
+  CHECK(t.room->paused());
+  CHECK_FALSE(t.room->advancing());
+}
+
+TEST_CASE("a pause ends its viewer's advances that wait, too") {
+  TestRoom t;
+  t.join(1);
+  t.tell(1, R"({"op":"advance","id":1,"n":100000})");
+  t.room->advance_until(0);
+  t.tell(1, R"({"op":"advance","id":2,"n":100000})");
+  t.tell(1, R"({"op":"pause","id":3})");
+  t.room->finish_turn();
+  CHECK(t.output.last("error", 1)["code"] == "interrupted");
+  CHECK(t.output.last("error", 2)["code"] == "interrupted");
+  CHECK(t.output.last("result", 3)["paused"] == true);
+  CHECK(t.room->world().tick() == 1);
+}
+
 TEST_CASE("what a viewer changed before it went is changed, and what it asked is dropped") {
   TestRoom t;
   t.join(1);
