@@ -60,7 +60,8 @@ void check_cost(const TickCost& cost, const std::string& field, const std::strin
   assert(cost.particles >= 0 && cost.substeps >= 0 && cost.sweeps >= 0 && cost.tick_rate >= 0);
   if (cost.substeps > kMostSubsteps)
     throw CostError(field, value,
-                    "what needs at most " + std::to_string(kMostSubsteps) + " substeps a tick",
+                    "what needs at most " + std::to_string(kMostSubsteps) +
+                        " substeps a tick; this needs " + whole(cost.substeps),
                     "take weaker wind, thinner air, softer springs or heavier cloth");
   const double a_tick = cost.updates(), a_second = a_tick * cost.tick_rate;
   if (a_tick <= kMostTickUpdates && a_second <= kMostUpdatesPerSecond) return;

@@ -153,7 +153,7 @@ class World {
 
   /// Makes the springs of all cloths `softness` times as stiff as defined, for owners that prefer
   /// fewer substeps to accurate stretch. Survives a reset.
-  /// @param softness  kLeastSoftness to 1; otherwise throws DefinitionError without any change
+  /// @param softness  kLeastSoftness to 1; DefinitionError otherwise, or if it winds the cloth up
   void set_softness(double softness);
   double softness() const { return softness_; }
 

@@ -13,6 +13,7 @@
 #include "core/world/object_name.h"
 #include "core/world/state_hash.h"
 #include "core/world/world.h"
+#include "core/world/wound_up.h"
 
 namespace weft {
 
@@ -209,6 +210,8 @@ void World<Real>::set_softness(double softness) {
   check_field("", {"softness", kSoftnessRange, "", "fraction of the springs' stiffness"}, softness);
   ClothModel<Real> model = model_of<Real>(def_);
   soften(softness, model);
+  for (std::size_t p = 0; p < model_.parts.size(); ++p)
+    refuse_wound_up(model_, model, p, state_.x, "softness");
   softness_ = softness;
   assert(model.springs.size() == model_.springs.size());
   assert(model.parts.size() == model_.parts.size());

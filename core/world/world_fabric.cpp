@@ -1,42 +1,14 @@
 // Worlds made from a running one: a fork, and one whose cloth has another fabric.
 
-#include <array>
 #include <cassert>
-#include <cstdio>
-#include <string>
 
 #include "core/cloth/softening.h"
 #include "core/error.h"
-#include "core/world/constants.h"
 #include "core/world/model_of.h"
 #include "core/world/world.h"
+#include "core/world/wound_up.h"
 
 namespace weft {
-
-namespace {
-
-/// An energy for people, to three digits.
-std::string joules(double energy) {
-  return rounded_text(energy) + " J";
-}
-
-/// Throws DefinitionError if the present shape, at rest in its fabric until now, winds the new one
-/// up like a spring: released it would crash through its own folds at hundreds of metres a second,
-/// in ticks of seconds.
-/// @param before,after  in the same shape
-/// @param mass          of the cloth [kg]
-void refuse_wound_up(const Energies& before, const Energies& after, double mass,
-                     const std::string& field) {
-  assert(mass > 0);
-  const double gained = after.stretch + after.bending - before.stretch - before.bending;
-  const double most = mass * kFastestRelease * kFastestRelease / 2;
-  if (!(gained > most)) return;
-  throw DefinitionError(field, joules(gained) + " more in the present shape",
-                        "at most " + joules(most),
-                        "change it in smaller steps, or where the cloth is flat");
-}
-
-}  // namespace
 
 template <class Real>
 std::unique_ptr<World<Real>> World<Real>::with_fabric(std::size_t cloth,
@@ -46,11 +18,7 @@ std::unique_ptr<World<Real>> World<Real>::with_fabric(std::size_t cloth,
   if (energy_) changed->measure_energy(true);  // a copy does not
   changed->take_fabric(cloth, fabric);
   changed->refuse_too_stiff();
-  double mass = 0;
-  const IndexRange& particles = changed->model_.parts[cloth].particles;
-  for (Index i = particles.first; i < particles.end(); ++i)
-    mass += static_cast<double>(changed->model_.mass[at_index(i)]);
-  refuse_wound_up(report_.energies, changed->report_.energies, mass, cloth_field(cloth, "fabric"));
+  refuse_wound_up(model_, changed->model_, cloth, state_.x, cloth_field(cloth, "fabric"));
   return changed;
 }
 

@@ -234,6 +234,8 @@ class Room {
   bool tell_sleep();
   void keep_budget(double seconds);
   void ask_for_budget(const BudgetDef& budget);
+  double softness_after(const proto::Set& command) const;
+  void log_softness();
   void follow_speed();
   void end_leases();
   void start_world(BuiltScene&& scene);

@@ -199,6 +199,14 @@ proto::Error refused_fabric(const DefinitionError& error, const proto::Set& set)
   return out;
 }
 
+proto::Error refused_softness(const DefinitionError& error, const proto::Set& set) {
+  // Another fabric or budget takes back what the last budget has softened.
+  return to_wire(error.renamed(set.softness    ? "softness"
+                               : set.fabric    ? "fabric"
+                               : set.budget_ms ? "budget_ms"
+                                               : "over_budget"));
+}
+
 proto::Error refused_environment(const DefinitionError& error, const proto::Set& set) {
   proto::Error out = to_wire(error);
   const std::string group = "environment.";
@@ -207,7 +215,11 @@ proto::Error refused_environment(const DefinitionError& error, const proto::Set&
     return out;
   }
   // The air costs too much. Of what was sent, what weighs most is named.
-  out.field = set.wind ? "wind" : set.fans ? "fans" : set.gust_speed ? "gust_speed" : "air_density";
+  out.field = set.wind          ? "wind"
+              : set.fans        ? "fans"
+              : set.gust_speed  ? "gust_speed"
+              : set.air_density ? "air_density"
+                                : "softness";
   out.value.clear();
   out.message = out.field + ": allowed is " + error.limit + " (" + error.hint + ")";
   return out;

@@ -35,6 +35,9 @@ proto::Result<std::optional<FabricWanted>> fabric_wanted(const ServedWorld& worl
 /// @param set  has a fabric
 proto::Error refused_fabric(const DefinitionError& error, const proto::Set& set);
 
+/// The same of the softness that it leads to.
+proto::Error refused_softness(const DefinitionError& error, const proto::Set& set);
+
 /// The same of its environment.
 proto::Error refused_environment(const DefinitionError& error, const proto::Set& set);
 

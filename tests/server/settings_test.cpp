@@ -137,6 +137,34 @@ TEST_CASE("a fabric whose ticks would cost more than the server allows is too co
   CHECK(t.room->world().def().cloths[0].fabric.stretch_warp == FabricDef().stretch_warp);
 }
 
+TEST_CASE("a softness that would throw the cloth, or costs too much, is refused by its name") {
+  TestRoom t;
+  t.join(1);
+  const auto refused = [&t](const char* fields) {
+    const std::string before = hash_of(*t.room);
+    const json answer =
+        t.say(1, std::string(R"({"op":"set","id":1,"wind":[1,2,3],)") + fields + "}");
+    CHECK(hash_of(*t.room) == before);  // the wind is in it
+    return answer;
+  };
+  t.say(1, R"({"op":"set","softness":0.01,"gravity":[0,-100,0]})");
+  t.say(1, R"({"op":"advance","n":60})");
+  const json thrown = refused(R"("softness":1)");
+  CHECK(thrown["code"] == "out_of_range");
+  CHECK(thrown["field"] == "softness");
+  CHECK(thrown["message"].get<std::string>().find("J in the present shape") != std::string::npos);
+
+  TestRoom large(true, {{"cloth.rows", "200"}, {"cloth.columns", "200"}});
+  large.join(1);
+  large.say(1, R"({"op":"set","softness":0.01})");
+  large.say(
+      1, R"({"op":"set","fabric":{"stretch_warp":8000,"stretch_weft":8000,"areal_density":0.01}})");
+  const json dear = large.say(1, R"({"op":"set","id":1,"softness":1})");
+  CHECK(dear["code"] == "too_costly");
+  CHECK(dear["field"] == "softness");
+  CHECK(large.room->world().softness() == 0.01);
+}
+
 TEST_CASE("who joins after a change of thickness hears the present one") {
   TestRoom t;
   t.join(1);

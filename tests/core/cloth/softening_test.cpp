@@ -77,3 +77,20 @@ TEST_CASE("a softness outside 0.01 to 1 is refused by name and changes nothing")
     CHECK(world.softness() == 1);
   }
 }
+
+TEST_CASE("a softness that would throw stretched cloth is refused, and smaller steps are not") {
+  WorldDef def = hanging(1);
+  def.environment.gravity = Vec3d(0, -50, 0);
+  World<float> world(def);
+  world.set_softness(0.01);
+  for (int tick = 0; tick < 60; ++tick) world.step();
+  // What is stretched alike has a hundred times the energy.
+  REQUIRE(world.report().energies.stretch * 99 > 450 * 1.2 * 0.9 * FabricDef().areal_density);
+  const std::uint64_t hash = world.hash();
+  CHECK_THROWS_AS(world.set_softness(1), DefinitionError);
+  CHECK(world.hash() == hash);
+  for (double softness = 0.01; softness < 1; softness = std::min(softness * 1.2, 1.0)) {
+    CHECK_NOTHROW(world.set_softness(softness));
+    for (int tick = 0; tick < 10; ++tick) world.step();
+  }
+}
