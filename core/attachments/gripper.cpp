@@ -315,6 +315,7 @@ void plan_grippers(double time, double seconds, double thickest, std::vector<Gri
       const double hold = gripper.gripping ? gripper.force : 0;
       const double squeeze = hold - (jaw.layered ? std::min(resistance, hold) : 0);
       jaw.press = {press_of(gripper, k), hold, squeeze};
+      jaw.press.room = opening / 2;
     }
   }
 }

@@ -1,5 +1,8 @@
+#include <memory>
+
 #include <catch2/catch.hpp>
 
+#include "core/cloth/fabric_presets.h"
 #include "tests/support/worlds.h"
 
 // The forces that jaws are told to press with, and those that they are told to feel.
@@ -53,6 +56,46 @@ WorldDef two_hanging_sheets(double load) {
   def.grippers = {jaws_at(Vec3d(0, 0.98, 0), 0.02, kForce)};
   def.grippers[0].half_extents[2] = 0.11;
   return def;
+}
+
+/// A sheet of 20 x 28 cm, 2 mm thick, that hangs from closed jaws, and by its upper edge too.
+std::unique_ptr<World<float>> sheet_in_jaws(const std::string& fabric, Index rows, Index columns) {
+  ClothDef sheet = test::flat_cloth(rows, columns, 0.2, 0.28);
+  sheet.fabric = make_fabric(fabric);
+  sheet.fabric.thickness = 2e-3;
+  sheet.origin = Vec3d(-0.1, 1.03, 0);
+  sheet.v = -Vec3d::UnitY();
+  WorldDef def = test::empty_world(sheet);
+  def.contact.seed.self = SelfContact::guard;
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.environment.damping = 1;
+  def.pins = {{EdgeStrip{Side::top, 0}}};
+  def.grippers = {jaws_at(Vec3d(0, 1, 0), 0.02, 8)};
+  def.grippers[0].half_extents = Vec3d(0.004, 0.02, 0.08);
+  auto world = std::make_unique<World<float>>(def);
+  close(*world);
+  test::advance(*world, 2);
+  REQUIRE(world->grippers()[0].gripping);
+  return world;
+}
+
+/// The same world with cloth of another thickness [m].
+std::unique_ptr<World<float>> with_thickness(const World<float>& world, double thickness) {
+  FabricDef fabric = world.def().cloths[0].fabric;
+  fabric.thickness = thickness;
+  std::unique_ptr<World<float>> changed = world.with_fabric(0, fabric);
+  changed->measure_forces(true);
+  return changed;
+}
+
+/// Mean force of the coming half second with which the jaws press [N].
+double pressed_by(World<float>& world) {
+  double pressed = 0;
+  for (int t = 0; t < 30; ++t) {
+    world.step();
+    for (const Vec3d& on_jaw : world.reactions()->colliders) pressed += on_jaw.norm() / 60;
+  }
+  return pressed;
 }
 
 }  // namespace
@@ -149,4 +192,43 @@ TEST_CASE("jaws hold two layers at 0.9 of what friction with both allows, and no
     else
       CHECK(slipped > 0.01);
   }
+}
+
+TEST_CASE(
+    "cloth that becomes thicker than its cells pushes jaws open, is held, and loses no tick") {
+  struct Case {
+    const char* fabric;
+    Index rows, columns;
+    double thickness;
+  };
+  // Cells of 17, 17, 20 and 12 mm.
+  for (const Case& c : {Case{"cotton", 17, 13, 0.013}, Case{"cotton", 17, 13, 0.016},
+                        Case{"denim", 15, 15, 0.02}, Case{"leather", 25, 19, 0.012}}) {
+    std::unique_ptr<World<float>> world = sheet_in_jaws(c.fabric, c.rows, c.columns);
+    world->unpin(world->pins().list[0].id);
+    test::advance(*world, 1);
+    world = with_thickness(*world, c.thickness);
+    const double before = test::centre_of_mass(*world)[1];
+    double strain = 0;
+    for (int t = 0; t < 60; ++t) {
+      REQUIRE_FALSE(world->step().divergence);
+      strain = std::max(strain, world->report().largest_strain);
+    }
+    INFO(c.fabric << " of " << c.thickness << " m");
+    CHECK(strain < 0.15);
+    CHECK(world->grippers()[0].opening == Approx(2 * c.thickness).epsilon(1e-3));
+    CHECK(pressed_by(*world) == Approx(8).epsilon(0.05));
+    CHECK(std::abs(test::centre_of_mass(*world)[1] - before) < 0.003);
+  }
+}
+
+TEST_CASE(
+    "jaws that thicker cloth has pushed open close again on what becomes thin, and press it") {
+  std::unique_ptr<World<float>> world = sheet_in_jaws("cotton", 17, 13);
+  world = with_thickness(*world, 0.016);
+  test::advance(*world, 1);
+  world = with_thickness(*world, 2e-3);
+  test::advance(*world, 1);
+  CHECK(world->grippers()[0].opening == Approx(4e-3).epsilon(1e-3));
+  CHECK(pressed_by(*world) == Approx(8).epsilon(0.05));
 }

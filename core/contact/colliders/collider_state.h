@@ -34,6 +34,7 @@ struct Press {
   /// What the rows of a pressed layer push with besides the squeeze, on the presser's side and on
   /// the other one, mean of the last tick [N].
   std::array<double, 2> pushes = {0, 0};
+  double room = 0;  ///< of a jaw that presses on the other one: half the gap between them [m]
 
   bool acts() const { return !direction.isZero(0); }
 };

@@ -39,6 +39,18 @@ Vec3<Real> push_way(const ObjectSolve<Real>& solve, const ContactRow<Real>& row)
   return facing > Real(kFacing) ? Vec3<Real>(press / facing) : row.normal;
 }
 
+/// Height to which a row's point is pushed out [m]. Cloth that is thicker than there is room for
+/// between jaws that hold it is led out as they open, and no faster: pushed beyond their rims,
+/// while they hold it, it would tear.
+template <class Real>
+Real height_wanted(const ObjectSolve<Real>& solve, const ContactRow<Real>& row) {
+  const MovingRow<Real>* const moving = solve.rows.moving_of(row);
+  if (!moving) return row.thickness;
+  const ColliderState& object = (*solve.motion.colliders)[moving->collider];
+  return object.grips() ? std::min(row.thickness, static_cast<Real>(object.press.room))
+                        : row.thickness;
+}
+
 /// How far a row's point may be pushed on [m], others having moved it already. That does not count
 /// while objects press: what holds on both sides of a layer must push alike, and as fast.
 template <class Real>
@@ -285,7 +297,8 @@ void push_out(ObjectSolve<Real>& solve, Real smallest_gap, Real dt) {
   if (moves) response.x_unpushed = state.x;
   for (const std::size_t r : response.busy) {
     const ContactRow<Real>& row = rows.all[r];
-    const Real lack = row.thickness - (row.normal.dot(weighted(row, state.x)) - row.offset);
+    const Real gap = row.normal.dot(weighted(row, state.x)) - row.offset;
+    const Real lack = height_wanted(solve, row) - gap;
     if (!(lack > Real(kTouchSlack))) continue;
     if (!moves && response.pushed.empty()) response.x_unpushed = state.x;
     const Real step = std::min(lack * Real(kPushOutPart), most_push(solve, row, lack, dt));
