@@ -35,6 +35,11 @@ Vec3d rest_of(const Pin& pin) {
   return pin.path->move.target - (pin.path->start[centre] + pin.path->offset);
 }
 
+/// Whether a pin moves, and its particles follow.
+bool is_led(const Pin& pin) {
+  return pin.path && !pin.path->behind;
+}
+
 /// The largest pace from which a pin can stop after a distance [m/s], if each tick, and the end of
 /// the last one, may take kPinAcceleration times a tick of it. In units of that, n such ticks cover
 /// n u - n (n - 1)/2; the fewest that may do have a last pace of at most 1.
@@ -141,6 +146,7 @@ void PinDrive<Real>::begin_tick(double tick_seconds, const ClothModel<Real>& mod
   pins_ = &pins;
   tick_seconds_ = tick_seconds;
   elapsed_ = work_ = 0;
+  left_.assign(pins.list.size(), {});
   for (Pin& pin : pins.list) {
     if (pin.path) pin.path->impulse.setZero();
   }
@@ -168,16 +174,37 @@ template <class Real>
 void PinDrive<Real>::drive(ClothState<Real>& state, Real dt, double seconds) {
   assert(pins_ && model_ && "begin_tick comes first");
   assert(state.x.size() == model_->mass.size());
-  for (Pin& pin : pins_->list) {
-    if (pin.path) drive(pin, *pin.path, state, dt, seconds);
+  for (std::size_t k = 0; k < left_.size(); ++k) {
+    Pin& pin = pins_->list[k];
+    if (!pin.path) continue;
+    const double most = pin.path->move.max_force * seconds;
+    left_[k] = {most, most};
+    drive(pin, *pin.path, state, dt, left_[k]);
   }
+}
+
+template <class Real>
+Real PinDrive<Real>::lead_on(ClothState<Real>& state, Real dt) {
+  assert(left_.size() == pins_->list.size());
+  double most = 0;
+  for (std::size_t k = 0; k < left_.size(); ++k) {
+    Pin& pin = pins_->list[k];
+    if (is_led(pin)) most = std::max(most, drive(pin, *pin.path, state, dt, left_[k]));
+  }
+  return static_cast<Real>(most);
+}
+
+template <class Real>
+bool PinDrive<Real>::leads() const {
+  return std::any_of(pins_->list.begin(), pins_->list.end(), is_led);
 }
 
 /// Bounds two impulses separately: that of the particles as a whole, and the one that keeps them in
 /// formation.
+/// @return the largest change of a velocity [m/s]
 template <class Real>
-void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& state, Real dt,
-                           double seconds) {
+double PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& state, Real dt,
+                             Left& left) {
   const Vec3d offset = path.offset + path.step * (elapsed_ / tick_seconds_);
   const double fastest = path.move.speed * kPinCatchUp;
   const auto is_free = [&](std::size_t i) { return state.inverse_mass[i] > 0; };
@@ -197,16 +224,18 @@ void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& stat
     mass += m;
     sum += change(n, i) * m;
   }
-  if (mass == 0) return;
+  if (mass == 0) return 0;
   const Vec3d mean = sum / mass;
   double apart = 0;
   for (std::size_t n = 0; n < pin.particles.size(); ++n) {
     const auto i = static_cast<std::size_t>(pin.particles[n]);
     if (is_free(i)) apart += (change(n, i) - mean).norm() * static_cast<double>(model_->mass[i]);
   }
-  const double most = path.move.max_force * seconds;
-  const double whole = sum.norm() > most ? most / sum.norm() : 1;
-  const double own = apart > most ? most / apart : 1;
+  const double whole = sum.norm() > left.whole ? left.whole / sum.norm() : 1;
+  const double own = apart > left.apart ? left.apart / apart : 1;
+  left.whole = std::max(0.0, left.whole - sum.norm());
+  left.apart = std::max(0.0, left.apart - apart);
+  double largest = 0;
   for (std::size_t n = 0; n < pin.particles.size(); ++n) {
     const auto i = static_cast<std::size_t>(pin.particles[n]);
     if (!is_free(i)) continue;
@@ -219,8 +248,10 @@ void PinDrive<Real>::drive(const Pin& pin, PinPath& path, ClothState<Real>& stat
     work_ += static_cast<double>(model_->mass[i]) * force_ratio_ *
              given.dot(path.velocity[n] + after) / 2;
     path.velocity[n] = after;
+    largest = std::max(largest, given.norm());
   }
   path.impulse += sum * (whole * force_ratio_);
+  return largest;
 }
 
 template <class Real>

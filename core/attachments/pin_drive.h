@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "core/attachments/pins.h"
 #include "core/cloth/cloth_model.h"
 #include "core/cloth/cloth_state.h"
@@ -31,8 +33,9 @@ void bring_to_rest(Pins& pins);
 
 /// Moves pins with bounded speed and force. Between kick and drift their particles get the impulse
 /// that brings each to its place at the end of the substep, but together no more than the pin's
-/// force allows; contact then stops them like any others. If they do not follow, the pin continues
-/// from where they are. A pin that has arrived is fixed again.
+/// force allows; contact with objects then stops them like any others, and what other cloth does to
+/// them the pin bears as far as its force goes. If they do not follow, the pin continues from where
+/// they are. A pin that has arrived is fixed again.
 template <class Real>
 class PinDrive {
  public:
@@ -49,6 +52,14 @@ class PinDrive {
   /// Call at the end of a tick, after the closing kick.
   void settle(ClothState<Real>& state, Real dt);
 
+  /// Call after either, when contact of cloths has changed velocities: leads the particles on with
+  /// what the pins' forces leave.
+  /// @return the largest change of a velocity [m/s]
+  Real lead_on(ClothState<Real>& state, Real dt);
+
+  /// Whether it would: those of a pin that lags yield to what is in their way.
+  bool leads() const;
+
   /// Work of the pins on the cloth in this tick [J].
   double work() const { return work_; }
 
@@ -57,14 +68,21 @@ class PinDrive {
   static bool finish(double tick_seconds, ClothState<Real>& state, Pins& pins);
 
  private:
+  /// What is left of a pin's impulses of a substep [N s].
+  struct Left {
+    double whole = 0;  ///< for its particles as a whole
+    double apart = 0;  ///< to keep them in formation
+  };
+
   void drive(ClothState<Real>& state, Real dt, double seconds);
-  void drive(const Pin& pin, PinPath& path, ClothState<Real>& state, Real dt, double seconds);
+  double drive(const Pin& pin, PinPath& path, ClothState<Real>& state, Real dt, Left& left);
 
   const ClothModel<Real>* model_ = nullptr;
   Pins* pins_ = nullptr;
   double tick_seconds_ = 0, elapsed_ = 0;  ///< of the tick [s]
   double force_ratio_ = 1;
   double work_ = 0;
+  std::vector<Left> left_;  ///< of each pin
 };
 
 extern template class PinDrive<float>;

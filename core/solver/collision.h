@@ -9,6 +9,7 @@
 #include "core/contact/objects/contact.h"
 #include "core/contact/seed/seed_contact.h"
 #include "core/profile.h"
+#include "core/solver/constants.h"
 #include "core/solver/held_forces.h"
 #include "core/solver/work_meter.h"
 
@@ -46,11 +47,10 @@ struct Collision {
                     Real force_ratio = 1) const {
     assert(dt > 0 && force_ratio >= 1);
     assert(!(objects && seed) && !(guard && seed) && "one model of contact");
-    if (pins) pins->before_drift(state, dt, static_cast<double>(force_ratio));
-    if (meter) meter->driven(state.v);
     const StageTimer timer(profile, Stage::contact, 0);
     if (objects) objects->note_kicked(state, static_cast<double>(force_ratio));
     if (guard) guard->solve(state, dt, profile, force_ratio);
+    drive_pins(state, dt, [&] { pins->before_drift(state, dt, static_cast<double>(force_ratio)); });
     if (objects)
       objects->resolve(state, dt, profile, guard);
     else if (guard)
@@ -65,6 +65,24 @@ struct Collision {
       assert(guard && "objects stop only where the guard truncates");
       guard->stand_still();
     }
+  }
+  /// Lets moving pins drive their particles, in turns with the rows between cloths: these share
+  /// impulses out by mass, and against what a pin leads would give way to it only in part.
+  /// @param drive  does so for the first time in this substep
+  template <class Drive>
+  void drive_pins(ClothState<Real>& state, Real dt, Drive&& drive) const {
+    if (!pins) return;
+    const auto metered = [&](auto&& act) {
+      if (meter) meter->before_drive(state.v);
+      act();
+      if (meter) meter->driven(state.v);
+    };
+    metered(drive);
+    if (!guard || !pins->leads()) return;
+    const Real enough = guard->residual(dt);
+    Real given = enough;
+    for (int turn = 0; turn < kPinTurns && given >= enough && guard->sweep(state) > 0; ++turn)
+      metered([&] { given = pins->lead_on(state, dt); });
   }
   /// How far any particle may go, whichever way, before it may meet an object [m].
   Real room(const ClothState<Real>& state) const {
@@ -83,11 +101,10 @@ struct Collision {
   /// Call at the end of a tick, after the closing kick, all of whose forces the velocities have.
   void settle(ClothState<Real>& state, Real dt, Profile& profile) const {
     assert(dt > 0);
-    if (pins) pins->settle(state, dt);
-    if (meter) meter->driven(state.v);
     const StageTimer timer(profile, Stage::contact, 0);
     if (objects) objects->note_kicked(state);
     if (guard) guard->settle(state, dt, profile);
+    drive_pins(state, dt, [&] { pins->settle(state, dt); });
     if (objects)
       objects->settle(state, dt, profile, guard);
     else if (guard)

@@ -24,6 +24,13 @@ inline constexpr double kPlausibleSpeed = 200;
 /// them out costs more than the work.
 inline constexpr std::size_t kPassedAtLeast = 2048;
 
+// Moving pins.
+
+/// Turns in a substep in which rows between cloths push what pins lead, and the pins lead it on, at
+/// most. More: slower steps while a pin moves in cloth that presses. Fewer: what such cloth hits is
+/// off its place, and arrives late.
+inline constexpr int kPinTurns = 20;
+
 // Steps while contact cannot act.
 
 /// Substeps after which positions are saved, to return to if a particle has left its path. Larger:

@@ -31,7 +31,8 @@ Vec3d surface_velocity(const ColliderFrame<Real>& frame, const Vec3d& point) {
 
 template <class Real>
 WorkMeter<Real>::WorkMeter(std::size_t particles, std::size_t first_jaw) : first_jaw_(first_jaw) {
-  for (Vec3Array<Real>* array : {&x_, &v_, &v_kicked_, &v_pulled_, &v_driven_, &sling_})
+  for (Vec3Array<Real>* array :
+       {&x_, &v_, &v_kicked_, &v_pulled_, &v_undriven_, &v_driven_, &sling_})
     array->assign(particles, Vec3<Real>::Zero());
   mean_.assign(particles, Vec3d::Zero());
   now_.corrected.assign(particles, Vec3d::Zero());
@@ -59,6 +60,12 @@ void WorkMeter<Real>::kicked(const MeteredKick& kick, const MeteredForces<Real>&
   kick_ = kick;
   forces_ = forces;
   v_kicked_ = v_pulled_ = v_driven_ = v;
+}
+
+template <class Real>
+void WorkMeter<Real>::driven(const Vec3Array<Real>& v) {
+  assert(v.size() == mean_.size());
+  for (std::size_t i = 0; i < mean_.size(); ++i) v_driven_[i] += v[i] - v_undriven_[i];
 }
 
 template <class Real>

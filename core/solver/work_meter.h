@@ -60,11 +60,12 @@ class WorkMeter {
     assert(v.size() == mean_.size());
     v_pulled_ = v_driven_ = v;
   }
-  /// After moving pins have driven their particles.
-  void driven(const Vec3Array<Real>& v) {
+  /// Before and after moving pins drive their particles; each time, if contact acts between.
+  void before_drive(const Vec3Array<Real>& v) {
     assert(v.size() == mean_.size());
-    v_driven_ = v;
+    v_undriven_ = v;
   }
+  void driven(const Vec3Array<Real>& v);
   /// After the drift and all that contact does.
   /// @param objects  contact that notes its impulses; may be null
   /// @param cloths   whether cloth meets cloth
@@ -105,9 +106,11 @@ class WorkMeter {
   MeteredKick kick_;
   MeteredForces<Real> forces_;
   Vec3Array<Real> x_, v_;  ///< before the kick
-  Vec3Array<Real> v_kicked_, v_pulled_, v_driven_;
-  Vec3Array<Real> sling_;   ///< forces of slings alone [N]
-  Vec3Array<double> mean_;  ///< (v + v')/2 [m/s]
+  Vec3Array<Real> v_kicked_, v_pulled_;
+  Vec3Array<Real> v_undriven_;  ///< before moving pins
+  Vec3Array<Real> v_driven_;    ///< `v_pulled_`, and what moving pins gave
+  Vec3Array<Real> sling_;       ///< forces of slings alone [N]
+  Vec3Array<double> mean_;      ///< (v + v')/2 [m/s]
 };
 
 extern template class WorkMeter<float>;

@@ -196,6 +196,12 @@ Real ClothGuard<Real>::sweep(ClothState<Real>& state) {
 }
 
 template <class Real>
+Real ClothGuard<Real>::residual(Real dt) const {
+  // Tangles come apart more easily while layers give way a little.
+  return cloths_.thickest * Real(open_pairs() > 0 ? kResidual : kAloneResidual) / dt;
+}
+
+template <class Real>
 void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
   if (!sweeps_.lack) return;
   add_push(rows_, push_, state.v, executor_);
@@ -204,11 +210,8 @@ void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
 template <class Real>
 void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
   if (rows_.all.empty()) return;
-  // Tangles come apart more easily while layers give way a little.
-  const double residual = open_pairs() > 0 ? kResidual : kAloneResidual;
-  const Real enough = cloths_.thickest * Real(residual) / dt;
   for (int k = 0; k < kMostSweeps; ++k) {
-    if (!(sweep(state) > enough)) break;
+    if (!(sweep(state) > residual(dt))) break;
   }
   push_apart(state);
 }

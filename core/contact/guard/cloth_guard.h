@@ -77,6 +77,9 @@ class ClothGuard {
   /// @return largest change of a normal velocity [m/s]
   Real sweep(ClothState<Real>& state);
 
+  /// Largest change of a normal velocity in a sweep that need not be followed by another one [m/s].
+  Real residual(Real dt) const;
+
   /// After all sweeps: a push for features that are too near, which moves them in the coming drift
   /// without giving them velocity. No sweep may see it: what holds against the push would become
   /// impulses, and what is squeezed between objects would be pressed harder each step.
