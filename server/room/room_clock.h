@@ -105,6 +105,12 @@ class RoomClock {
   }
   double wanted_softness() const { return wanted_softness_; }
   void set_softness(double softness) { wanted_softness_ = softness; }
+  /// Springs are what they were at another time.
+  /// @param present  as the budget had left them
+  void restore_softness(double wanted, double present) {
+    wanted_softness_ = wanted;
+    budget_.restart(budget_.budget(), {budget_.setting().pace, present}, wanted);
+  }
   /// Holds to a budget from now on, without the restrictions of the previous one.
   void set_budget(const BudgetDef& budget) {
     budget_.restart(budget, {1, wanted_softness_}, wanted_softness_);

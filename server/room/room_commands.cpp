@@ -246,7 +246,8 @@ Room::Outcome Room::apply(ViewerId, const proto::Save& command) {
     return *std::move(error);
   std::unique_ptr<ServedWorld> kept = world_->fork();
   for (const Hand& hand : holds_.hands()) kept->release(hand.grab);
-  saves_.keep(command.name, {std::move(kept), guarantee_, mesh_, forces_, holds_.pin_owners()});
+  saves_.keep(command.name, {std::move(kept), guarantee_, mesh_, forces_, holds_.pin_owners(),
+                             time_.wanted_softness()});
   return proto::Reply(proto::DoneReply{"save", world_->tick()});
 }
 
@@ -263,6 +264,7 @@ Room::Outcome Room::apply(ViewerId viewer, const proto::Restore& command) {
   mesh_ = save.mesh;
   guarantee_ = save.guarantee;
   forces_ = save.forces;
+  time_.restore_softness(save.wanted_softness, world_->softness());
   tell_jump("restored", "the cloth is back in its state " + command.name, viewer);
   for (const auto& [pin, owner] : save.pin_owners) holds_.own(pin, owner);
   tell_guarantee();

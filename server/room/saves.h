@@ -21,6 +21,7 @@ struct Save {
   proto::MeshAnnouncement mesh;  ///< with the thickness of its fabrics
   MeasuredForces forces;
   std::map<PinId, proto::ViewerId> pin_owners;
+  double wanted_softness = 1;  ///< which a budget may have lowered in `world`
 };
 
 /// States that a room keeps in memory, by name; all of its present scene.

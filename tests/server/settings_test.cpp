@@ -165,6 +165,19 @@ TEST_CASE("a softness that would throw the cloth, or costs too much, is refused 
   CHECK(large.room->world().softness() == 0.01);
 }
 
+TEST_CASE("a restored state keeps its softness, whatever is set then") {
+  TestRoom t;
+  t.join(1);
+  t.say(1, R"({"op":"set","softness":0.5})");
+  t.say(1, R"({"op":"save","name":"soft"})");
+  t.say(1, R"({"op":"set","softness":1})");
+  t.say(1, R"({"op":"restore","name":"soft"})");
+  for (const char* change : {R"("fabric":{"friction":0.3})", R"("budget_ms":9)"}) {
+    CHECK(t.say(1, std::string(R"({"op":"set","id":1,)") + change + "}")["op"] == "result");
+    CHECK(t.room->world().softness() == 0.5);
+  }
+}
+
 TEST_CASE("who joins after a change of thickness hears the present one") {
   TestRoom t;
   t.join(1);
