@@ -41,8 +41,16 @@ struct Collision {
   void before_kick(const ClothState<Real>& state) const {
     if (objects) objects->note_motion(state);
   }
-  /// Call between the kick and the drift of `dt` [s]: makes the velocities admissible.
+  /// Call between the kick and the drift of `dt` [s], before the motion is checked: where a pin
+  /// holds against forces, these alone would give its particles a speed that none of them gets.
   /// @param force_ratio  impulse of a force that gives the velocities an impulse of 1 here [1]
+  void drive_pins(ClothState<Real>& state, Real dt, Real force_ratio = 1) const {
+    assert(dt > 0 && force_ratio >= 1);
+    if (!pins) return;
+    metered(state, [&] { pins->before_drift(state, dt, static_cast<double>(force_ratio)); });
+  }
+  /// Call between that and the drift: makes the velocities admissible.
+  /// @param force_ratio  as for drive_pins
   void before_drift(ClothState<Real>& state, Real dt, Profile& profile,
                     Real force_ratio = 1) const {
     assert(dt > 0 && force_ratio >= 1);
@@ -50,7 +58,7 @@ struct Collision {
     const StageTimer timer(profile, Stage::contact, 0);
     if (objects) objects->note_kicked(state, static_cast<double>(force_ratio));
     if (guard) guard->solve(state, dt, profile, force_ratio);
-    drive_pins(state, dt, [&] { pins->before_drift(state, dt, static_cast<double>(force_ratio)); });
+    lead_pins(state, dt);
     if (objects)
       objects->resolve(state, dt, profile, guard);
     else if (guard)
@@ -66,23 +74,22 @@ struct Collision {
       guard->stand_still();
     }
   }
-  /// Lets moving pins drive their particles, in turns with the rows between cloths: these share
+  /// Lets moving pins lead their particles on, in turns with the rows between cloths: these share
   /// impulses out by mass, and against what a pin leads would give way to it only in part.
-  /// @param drive  does so for the first time in this substep
-  template <class Drive>
-  void drive_pins(ClothState<Real>& state, Real dt, Drive&& drive) const {
-    if (!pins) return;
-    const auto metered = [&](auto&& act) {
-      if (meter) meter->before_drive(state.v);
-      act();
-      if (meter) meter->driven(state.v);
-    };
-    metered(drive);
-    if (!guard || !pins->leads()) return;
+  void lead_pins(ClothState<Real>& state, Real dt) const {
+    if (!pins || !guard || !pins->leads()) return;
     const Real enough = guard->residual(dt);
+    metered(state, [&] { pins->lead_on(state, dt); });  // after the warm start
     Real given = enough;
     for (int turn = 0; turn < kPinTurns && given >= enough && guard->sweep(state) > 0; ++turn)
-      metered([&] { given = pins->lead_on(state, dt); });
+      metered(state, [&] { given = pins->lead_on(state, dt); });
+  }
+  /// Lets pins act, and books what they have given.
+  template <class Act>
+  void metered(const ClothState<Real>& state, Act&& act) const {
+    if (meter) meter->before_drive(state.v);
+    act();
+    if (meter) meter->driven(state.v);
   }
   /// How far any particle may go, whichever way, before it may meet an object [m].
   Real room(const ClothState<Real>& state) const {
@@ -104,7 +111,8 @@ struct Collision {
     const StageTimer timer(profile, Stage::contact, 0);
     if (objects) objects->note_kicked(state);
     if (guard) guard->settle(state, dt, profile);
-    drive_pins(state, dt, [&] { pins->settle(state, dt); });
+    if (pins) metered(state, [&] { pins->settle(state, dt); });
+    lead_pins(state, dt);
     if (objects)
       objects->settle(state, dt, profile, guard);
     else if (guard)

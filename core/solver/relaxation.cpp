@@ -263,6 +263,7 @@ std::optional<BlowUp> move(Tick<Real>& tick) {
     for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += wanted[i];
     return std::nullopt;
   }
+  tick.collision.drive_pins(state, tick.dt);
   if (const auto found = find_blow_up(tick.model, state, tick.dt)) return found;
   tick.collision.before_drift(state, tick.dt, tick.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * tick.dt;

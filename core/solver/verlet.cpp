@@ -285,6 +285,7 @@ double advance_together(Tick<Real>& tick, const Kicks<Real>& kicks, const Subste
       swept_kick(tick, kicks.full, Real(0.5));
     const Kick<Real>& k = s == 0 ? kicks.opening : kicks.full;
     pull(tick, k, s, substeps);
+    collision.drive_pins(state, tick.dt, k.force_ratio);
     if (!collision.empty()) blow_up = find_blow_up(tick.model, state, tick.dt, tick.work.executor);
     if (blow_up) return work;
     collision.before_drift(state, tick.dt, tick.profile, k.force_ratio);

@@ -201,8 +201,9 @@ std::optional<BlowUp> move(Step<Real>& step, const Collision<Real>& collision) {
     return std::nullopt;
   }
   for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = work.displacement[i] / step.dt;
-  if (const auto found = find_blow_up(step.model, state, step.dt)) return found;
   if (collision.meter) collision.meter->pulled(state.v);
+  collision.drive_pins(state, step.dt);
+  if (const auto found = find_blow_up(step.model, state, step.dt)) return found;
   collision.before_drift(state, step.dt, step.profile);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.x[i] += state.v[i] * step.dt;
   collision.after_drift(state, step.dt, step.profile);
