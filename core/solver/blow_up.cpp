@@ -2,6 +2,7 @@
 
 #include "core/solver/blow_up.h"
 
+#include <algorithm>
 #include <cassert>
 #include <cmath>
 
@@ -78,6 +79,24 @@ std::optional<BlowUp> find_blow_up(const ClothModel<Real>& model, const ClothSta
   return std::nullopt;
 }
 
+template <class Real>
+void hold_back(const ClothModel<Real>& model, Real dt, Vec3Array<Real>& displacements) {
+  assert(dt > 0 && displacements.size() == model.mass.size());
+  const double most = kPlausibleSpeed * static_cast<double>(dt);
+  for (const ClothPart<Real>& part : model.parts) {
+    const auto first = displacements.begin() + part.particles.first;
+    const auto end = first + part.particles.count;
+    double longest = 0;
+    for (auto d = first; d != end; ++d)
+      longest = std::max(longest, d->template cast<double>().norm());
+    if (!(longest > most)) continue;
+    const auto factor = static_cast<Real>(most / longest);
+    std::for_each(first, end, [factor](Vec3<Real>& d) { d *= factor; });
+  }
+}
+
+template void hold_back(const ClothModel<float>&, float, Vec3Array<float>&);
+template void hold_back(const ClothModel<double>&, double, Vec3Array<double>&);
 template std::optional<BlowUp> find_blow_up(const ClothModel<float>&, const ClothState<float>&,
                                             float, Executor*);
 template std::optional<BlowUp> find_blow_up(const ClothModel<double>&, const ClothState<double>&,

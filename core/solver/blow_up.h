@@ -33,4 +33,10 @@ template <class Real>
 std::optional<BlowUp> find_blow_up(const ClothModel<Real>& model, const ClothState<Real>& state,
                                    Real dt, Executor* executor = nullptr);
 
+/// Shortens the displacements of each cloth alike, so that none of its particles exceeds
+/// kPlausibleSpeed. Springs give a free cloth no momentum, nor does a common factor.
+/// @param dt  in which they are gone [s]
+template <class Real>
+void hold_back(const ClothModel<Real>& model, Real dt, Vec3Array<Real>& displacements);
+
 }  // namespace weft

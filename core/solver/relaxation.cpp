@@ -256,7 +256,8 @@ void meter_sweeps(const Tick<Real>& tick) {
 template <class Real>
 std::optional<BlowUp> move(Tick<Real>& tick) {
   ClothState<Real>& state = tick.state;
-  const Vec3Array<Real>& wanted = tick.work.wanted;
+  Vec3Array<Real>& wanted = tick.work.wanted;
+  if (tick.work.holds_back) hold_back(tick.model, tick.dt, wanted);
   for (std::size_t i = 0; i < state.x.size(); ++i) state.v[i] = wanted[i] / tick.dt;
   meter_sweeps(tick);
   if (tick.collision.empty()) {
@@ -275,7 +276,7 @@ std::optional<BlowUp> move(Tick<Real>& tick) {
 /// Whether the tick needs only the sweeps' own arrays.
 template <class Real>
 bool rows_alone(const Tick<Real>& tick) {
-  if (tick.has_external_forces() || !tick.collision.empty()) return false;
+  if (tick.has_external_forces() || !tick.collision.empty() || tick.work.holds_back) return false;
   for (std::size_t p = 0; p < tick.model.parts.size(); ++p) {
     if (!in_rows(tick, p)) return false;
   }

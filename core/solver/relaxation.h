@@ -61,6 +61,9 @@ struct RelaxationWorkspace {
   Vec3Array<Real> membrane_multiplier;      ///< of each triangle's strains, likewise [kg m^2]
   std::vector<GridRelaxation<Real>> grids;  ///< for each part the row-wise form of XPBD
   EnergyPass<Real> energy;
+  /// In: no particle moves faster than kPlausibleSpeed. Sweeps give back a length at once, so the
+  /// shorter the substep, the greater the speed that far-stretched cloth gets from them.
+  bool holds_back = false;
 
   /// Sizes all arrays for a cloth.
   void prepare(const ClothModel<Real>& model);

@@ -163,6 +163,7 @@ void World<Real>::advance_or_recover(int substeps) {
     }
   }
   for (int attempt = 0;; ++attempt) {
+    solvers_.relaxation.holds_back = attempt > 0;
     const AdvanceResult result = advance(kind, substeps);
     if (kind == SolverKind::implicit && leaves_to_verlet(result, substeps)) {
       restore_last_good();

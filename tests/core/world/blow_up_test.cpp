@@ -105,6 +105,21 @@ TEST_CASE("two threads find the same particle of a large cloth as one, the first
   CHECK(two_threads.shared() > 0);
 }
 
+TEST_CASE("what is held back keeps its direction and its ratios, cloth by cloth") {
+  const ClothModel<float> model = two_cloths();
+  const auto second = static_cast<std::size_t>(model.parts[1].particles.first);
+  Vec3Array<float> displacements(model.mass.size(), Vec3f(1e-3f, 0, 2e-3f));
+  const Vec3f longest(0, 30, 40);
+  displacements[second] = longest;
+  const Vec3Array<float> before = displacements;
+  hold_back(model, 0.01f, displacements);
+  CHECK(
+      displacements[second].isApprox(longest * (0.01f * static_cast<float>(kPlausibleSpeed) / 50)));
+  for (std::size_t i = 0; i < second; ++i) CHECK(displacements[i] == before[i]);
+  for (std::size_t i = second; i < before.size(); ++i)
+    CHECK(displacements[i].isApprox(before[i] * (displacements[second][1] / 30)));
+}
+
 TEST_CASE("a cloth that sleeps is not examined") {
   const ClothModel<float> model = two_cloths();
   ClothState<float> state = still(model);

@@ -93,6 +93,40 @@ TEST_CASE("after a tick that was taken back the work of a moving pin is what the
   }
 }
 
+TEST_CASE("under relaxation cloth that is drawn out a hundredfold contracts, and falls") {
+  // However short a substep, its sweeps give back metres at once.
+  WorldDef def = test::empty_world(test::flat_cloth(20, 20));
+  def.environment.gravity = Vec3d(0, -9.81, 0);
+  def.solver.kind = SolverKind::relaxation;
+  def.relaxation.sweeps = 10;
+  def.relaxation.substeps = 8;
+  def.relaxation.damping = 0;
+  def.relaxation.compliance = GENERATE(0.0, 1.0);
+  def.contact.seed.self = GENERATE(SelfContact::none, SelfContact::guard);
+  CAPTURE(def.relaxation.compliance, def.contact.seed.self);
+  // As pins leave cloth when they let go of it.
+  def.colliders = {{"ground", PlaneDef{Vec3d(0, -20, 0), Vec3d::UnitY()}}};
+  World<float> world(def);
+  world.state().x[0] += Vec3f(-4, 3, 0);
+  world.accept_state();
+  const Vec3d start = test::centre_of_mass(world);
+  int taken_back = 0;
+  constexpr int kTicks = 30;
+  for (int tick = 0; tick < kTicks; ++tick) {
+    const TickReport& report = world.step();
+    if (!report.divergence) continue;
+    ++taken_back;
+    CHECK(report.divergence->remedy == DivergenceRemedy::more_substeps);
+  }
+  CHECK(taken_back > 0);
+  CHECK(taken_back <= 5);
+  CHECK(world.report().largest_strain < 1);
+  const double time = kTicks * world.tick_seconds();
+  const Vec3d moved = test::centre_of_mass(world) - start;
+  CHECK(moved[1] == Approx(-9.81 * time * time / 2).epsilon(0.3));
+  CHECK(Vec3d(moved[0], 0, moved[2]).norm() < 0.02);
+}
+
 TEST_CASE("cloth that was stopped is stepped more finely from tick to tick until it moves again") {
   // Gathered into a ball five times its size it has a million times its usual energy, and the air
   // damps it faster than any number of substeps that its shape at rest asks for.
