@@ -90,7 +90,12 @@ function without_unused(text) {
 }
 
 function with_slim_shaders(text) {
-  return text.replace(/`([^`]*)`/g, (_, shader) => `\`${without_branches(without_comments(shader))}\``);
+  return text.replace(/`([^`]*)`/g, (_, shader) => `\`${without_branches(without_comments(with_one_curve(shader)))}\``);
+}
+
+/** Of three's curves of tone the page has the neutral one; the others stand before it. */
+export function with_one_curve(shader) {
+  return shader.replace(/vec3 LinearToneMapping\([\s\S]*(?=vec3 NeutralToneMapping\()/, "");
 }
 
 /** Line breaks stay, because they end directives, and so do spaces within these. */

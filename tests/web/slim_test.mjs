@@ -3,7 +3,7 @@ import { execFileSync } from 'node:child_process';
 import { readdir, readFile } from 'node:fs/promises';
 import test from 'node:test';
 import { fileURLToPath } from 'node:url';
-import { slim_three, UNDEFINED, UNUSED_FUNCTIONS, with_slim_own } from '../../web/slim_three.mjs';
+import { slim_three, UNDEFINED, UNUSED_FUNCTIONS, with_one_curve, with_slim_own } from '../../web/slim_three.mjs';
 import { require_package } from './support/packages.mjs';
 
 // What the page's build leaves out of three.
@@ -42,6 +42,10 @@ test('whatever a material of the page defines, its shaders are the renderer’s 
   const [whole, slim] = [await shaders([]), await shaders([slim_three])];
   const names = Object.keys(whole);
   assert.ok(names.length > 100);
+  const curves = (text) => text.match(/\w+(?=ToneMapping\()/g);
+  assert.ok(curves(whole.tonemapping_pars_fragment).length > 5);
+  assert.deepEqual(curves(slim.tonemapping_pars_fragment), ['Neutral', 'Custom']);
+  whole.tonemapping_pars_fragment = with_one_curve(whole.tonemapping_pars_fragment);
   const missing = names.filter((name) => slim[name] === '' && whole[name] !== '');
   assert.ok(missing.length > 10, 'unused ones are left out');
   const kept = names.filter((name) => !missing.includes(name));
@@ -61,7 +65,7 @@ test('whatever a material of the page defines, its shaders are the renderer’s 
 
 /** What a source may name of what is left out, apart from properties that are called as their macro. */
 const LEFT_OUT =
-  /\b(PointsMaterial|SpriteMaterial|LineDashedMaterial|Mesh(Lambert|Phong|Toon|Matcap|Normal|Distance)Material|VSMShadowMap|CubeTexture\w*|CubeCamera|UniformsGroup|(Instanced|Batched|Skinned)Mesh|Fog\w*|ObjectSpaceNormalMap|computeTangents|vertexTangents)\b|\.(background|toJSON|xr)\b/;
+  /\b(PointsMaterial|SpriteMaterial|LineDashedMaterial|Mesh(Lambert|Phong|Toon|Matcap|Normal|Distance)Material|VSMShadowMap|CubeTexture\w*|CubeCamera|UniformsGroup|(Instanced|Batched|Skinned)Mesh|Fog\w*|ObjectSpaceNormalMap|(Linear|Reinhard|Cineon|ACESFilmic|AgX)ToneMapping|computeTangents|vertexTangents)\b|\.(background|toJSON|xr)\b/;
 
 /** A macro as three calls what defines it, but for capitals: USE_SHEEN_COLORMAP is of sheenColorMap. */
 const property_of = (macro) => macro.replace(/^(USE|NUM)_|S$|_/g, '').toLowerCase();
