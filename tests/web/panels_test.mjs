@@ -108,6 +108,19 @@ test('pause, step, reset, gravity and the view’s keys and buttons do what they
   }),
 );
 
+test('the button that pauses says by its name alone what it does, and looks other while time stands', bounded, () =>
+  with_page({}, async (page, script) => {
+    const pause = page.locator('#pause');
+    const [running, standing] = ['.when-running', '.when-paused'].map((part) => pause.locator(part));
+    for (const [name, seen, unseen] of [['Pause', running, standing], ['Resume', standing, running]]) {
+      await until(async () => (await pause.getAttribute('aria-label')) === name, name);
+      assert.equal(await pause.getAttribute('aria-pressed'), null, 'a state would say the same again');
+      assert.ok((await seen.isVisible()) && (await unseen.isHidden()), name);
+      await script.pause();
+    }
+  }),
+);
+
 test('a frame is around what is typed into, and not around sliders', bounded, () =>
   with_page({ width: 1280, height: 700 }, async (page) => {
     const borders = (selector) =>

@@ -78,7 +78,7 @@ export class Toolbar {
 
   state(state: State): void {
     this.paused = state.paused;
-    this.pause.setAttribute('aria-pressed', String(state.paused));
+    this.pause.toggleAttribute('data-paused', state.paused); // to be seen; heard is the name alone
     const action = state.paused ? 'Resume' : 'Pause';
     this.pause.setAttribute('aria-label', action);
     this.pause.title = `${action} (Space)`;
