@@ -22,6 +22,20 @@ test('a first visit tells that the cloth can be taken, until it is', bounded, ()
   }),
 );
 
+test('open controls take the place of the hint wherever they lie above the toolbar', bounded, () =>
+  with_page({ paused: true }, async (page) => {
+    const hint = page.locator('#hint');
+    const more = page.getByRole('button', { name: 'Controls' });
+    for (const [width, height] of [[390, 844], [810, 1080], [740, 360], [1024, 700]]) {
+      await page.setViewportSize({ width, height });
+      await until(() => hint.isVisible(), `the hint is there at ${width} x ${height}`);
+      await more.click();
+      assert.ok(await hint.isHidden(), `at ${width} x ${height}`);
+      await more.click();
+    }
+  }),
+);
+
 test('a viewer types a name, which others see and the browser remembers', bounded, () =>
   with_page({ width: 900, height: 600 }, async (page, script) => {
     const other = await open_page(browser, server.url, { width: 900, height: 600, name: 'Ben' });
