@@ -84,3 +84,27 @@ test('after the server was away the page comes back, without the hand', bounded,
     await second?.stop();
   }
 });
+
+test('a loss of the server is told once, and its return once, however many attempts fail', bounded, async () => {
+  let own = await start_server(CALM);
+  const page = await open_page(browser, own.url);
+  try {
+    await page.evaluate(() => {
+      const text = document.getElementById('connection-text');
+      window.told = [];
+      new MutationObserver(() => window.told.push(text.textContent)).observe(text, { childList: true });
+    });
+    await own.stop('SIGKILL');
+    own = null;
+    // The browser itself tells of each.
+    const failed = () => page.complaints.filter((text) => text.startsWith('WebSocket connection to')).length;
+    await until(() => failed() >= 3, 'attempts fail');
+    assert.deepEqual(await page.evaluate(() => window.told), ['Reconnecting']);
+    own = await start_server(CALM, Number(new URL(page.url()).port));
+    await until(async () => (await read(page, 'phase')) === 'open', 'it is connected again');
+    assert.deepEqual(await page.evaluate(() => window.told), ['Reconnecting', 'Connected']);
+  } finally {
+    await page.context().close();
+    await own?.stop();
+  }
+});

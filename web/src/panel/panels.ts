@@ -28,6 +28,8 @@ export class Panels {
 
   constructor() {
     this.small.addEventListener('change', () => this.show_viewers());
+    // Each attempt to come back is part of the loss, which is told once.
+    if (phase === 'connecting' && this.phase === 'waiting') return;
   }
 
   toggle_figures(): void {
