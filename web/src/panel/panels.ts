@@ -1,14 +1,13 @@
-import type { Roster, State, Viewer } from '../../../proto/js/messages.js';
-import { name_element, write_words } from '../view/words.js';
+import type { Roster, State } from '../../../proto/js/messages.js';
+import { write_words } from '../view/words.js';
 import type { Refusal } from '../wire/connection.js';
 import { Disclosure } from './disclosure.js';
 import { element } from './element.js';
 import { EnergyChart } from './energy_chart.js';
 import { crossings_text, guarantee_text, reasons_text } from './guarantee.js';
+import { ViewerList } from './viewer_list.js';
 
 const TOAST_TIME = 4000; // [ms]
-const MOST_NAMES = 6;
-const SMALL = '(width <= 600px), (height <= 480px)'; // as in screens.css; several people are only counted there
 const WIDE = '(width >= 1600px) and (height >= 720px)'; // where figures do not cover the cloth
 const RATE_WINDOW = 2; // window of the tick rate [s]
 
@@ -19,24 +18,18 @@ export class Panels {
   private toast_timer = 0;
   private phase: Phase = 'connecting';
   private refusal: Refusal | null = null;
-  private viewers: Viewer[] = [];
-  private own = 0;
-  private small = window.matchMedia(SMALL);
+  private viewers = new ViewerList();
   private ticks: { tick: number; time: number }[] = [];
   private energy = new EnergyChart();
   private figures = new Disclosure('figures', window.matchMedia(WIDE).matches, () => this.energy.draw());
-
-  constructor() {
-    this.small.addEventListener('change', () => this.show_viewers());
-    // Each attempt to come back is part of the loss, which is told once.
-    if (phase === 'connecting' && this.phase === 'waiting') return;
-  }
 
   toggle_figures(): void {
     this.figures.toggle();
   }
 
   connection(phase: Phase): void {
+    // Each attempt to come back is part of the loss, which is told once.
+    if (phase === 'connecting' && this.phase === 'waiting') return;
     this.phase = phase;
     this.show_phase();
     if (phase === 'open') return;
@@ -138,27 +131,7 @@ export class Panels {
   }
 
   roster({ viewers }: Pick<Roster, 'viewers'>, own: number): void {
-    this.viewers = [...viewers].sort((a, b) => Number(b.id === own) - Number(a.id === own));
-    this.own = own;
-    this.show_viewers();
-  }
-
-  private show_viewers(): void {
-    const { viewers, own, small } = this;
-    const most = small.matches && viewers.length > 1 ? 0 : MOST_NAMES;
-    const items = viewers.slice(0, most).map(({ id, name, color }) => {
-      const item = document.createElement('li');
-      item.append(span('swatch', ''), id === own ? own_entry(name) : name_element(name));
-      item.style.setProperty('--color', color);
-      return item;
-    });
-    const others = viewers.length - items.length;
-    if (others > 0) {
-      const more = document.createElement('li');
-      more.append(opener('Who is here', most ? `and ${others} more` : `${others} people`));
-      items.push(more);
-    }
-    element('viewers').replaceChildren(...items);
+    this.viewers.show(viewers, own);
   }
 
   tell(message: string): void {
@@ -168,27 +141,6 @@ export class Panels {
     window.clearTimeout(this.toast_timer);
     this.toast_timer = window.setTimeout(() => (toast.hidden = true), TOAST_TIME);
   }
-}
-
-/** The own name, which can be changed. */
-function own_entry(name: string): HTMLElement {
-  return opener('Change your name', name_element(name), span('you', ' (you)'));
-}
-
-/** A button that opens the list of people. */
-function opener(title: string, ...parts: (HTMLElement | string)[]): HTMLElement {
-  const made = document.createElement('button');
-  made.type = 'button';
-  made.title = title;
-  made.append(...parts);
-  return made;
-}
-
-function span(name: string, text: string): HTMLElement {
-  const made = document.createElement('span');
-  made.className = name;
-  made.textContent = text;
-  return made;
 }
 
 function set_text(id: string, text: string): void {
