@@ -210,8 +210,9 @@ void ClothGuard<Real>::push_apart(ClothState<Real>& state) {
 template <class Real>
 void ClothGuard<Real>::respond_alone(ClothState<Real>& state, Real dt) {
   if (rows_.all.empty()) return;
+  const Real enough = residual(dt);
   for (int k = 0; k < kMostSweeps; ++k) {
-    if (!(sweep(state) > residual(dt))) break;
+    if (!(sweep(state) > enough)) break;
   }
   push_apart(state);
 }

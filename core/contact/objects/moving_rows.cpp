@@ -7,9 +7,9 @@
 #include "core/instantiate.h"
 
 namespace weft {
-
 namespace {
 
+/// Adds what a row has given to the sums of its object.
 /// @param point   of the row [m]
 /// @param normal  of the row
 template <class Real>
