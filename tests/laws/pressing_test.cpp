@@ -87,13 +87,6 @@ void press(World<float>& world, double speed = 0.1, std::size_t object = 1) {
   test::advance(world, 1);
 }
 
-Vec3d momentum_of(const World<float>& world) {
-  Vec3d sum = Vec3d::Zero();
-  for (std::size_t i = 0; i < world.state().v.size(); ++i)
-    sum += world.model().mass[i] * world.state().v[i].cast<double>();
-  return sum;
-}
-
 /// Mean forces on the ground and the object in some ticks [N].
 std::array<Vec3d, 2> mean_forces(World<float>& world, int ticks) {
   std::array<Vec3d, 2> mean = {Vec3d::Zero(), Vec3d::Zero()};
@@ -211,10 +204,10 @@ TEST_CASE("of two objects that press a layer between them the weaker one gives w
     REQUIRE(world.move_collider(0, up));
     press(world);
     const double start = world.colliders()[1].pose.position[1];
-    Vec3d momentum = momentum_of(world);
+    Vec3d momentum = test::momentum(world);
     constexpr int kTicks = 60;
     const auto [table, object] = mean_forces(world, kTicks);
-    momentum = momentum_of(world) - momentum;
+    momentum = test::momentum(world) - momentum;
     const double rise = world.colliders()[1].pose.position[1] - start;
     INFO("from below " << below << " N, from above " << above << " N");
     const double weight = 0.008 * 9.81, least = std::min(below - weight, above);

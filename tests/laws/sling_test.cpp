@@ -22,13 +22,6 @@ GrabDef sling(const Vec3d& target) {
   return def;
 }
 
-Vec3d momentum(const World<double>& world) {
-  Vec3d sum = Vec3d::Zero();
-  for (std::size_t i = 0; i < world.state().v.size(); ++i)
-    sum += world.state().v[i] * world.model().mass[i];
-  return sum;
-}
-
 }  // namespace
 
 TEST_CASE("a sling that is fired gives the impulse that it states, to 1e-12, and then nothing") {
@@ -41,11 +34,11 @@ TEST_CASE("a sling that is fired gives the impulse that it states, to 1e-12, and
   for (int tick = 1; tick <= 6; ++tick) {
     CHECK(world.grabs().impulses.size() == 1);
     world.step();
-    CHECK((momentum(world) - *impulse * (tick / 6.0)).norm() < 1e-12);
+    CHECK((test::momentum(world) - *impulse * (tick / 6.0)).norm() < 1e-12);
   }
   CHECK(idle(world.grabs()));
   test::advance(world, 0.5);
-  CHECK((momentum(world) - *impulse).norm() < 1e-12);
+  CHECK((test::momentum(world) - *impulse).norm() < 1e-12);
 }
 
 TEST_CASE("a sling leaves the cloth alone as long as it is held, moved and let go unfired") {

@@ -50,4 +50,12 @@ Vec3d centre_of_mass(const World<Real>& world) {
   return sum / mass;
 }
 
+template <class Real>
+Vec3d momentum(const World<Real>& world) {
+  Vec3d sum = Vec3d::Zero();
+  for (std::size_t i = 0; i < world.state().v.size(); ++i)
+    sum += world.state().v[i].template cast<double>() * static_cast<double>(world.model().mass[i]);
+  return sum;
+}
+
 }  // namespace weft::test

@@ -3,6 +3,7 @@
 #include "core/cloth/fabric_presets.h"
 #include "core/error.h"
 #include "tests/support/sheets.h"
+#include "tests/support/worlds.h"
 
 // Pins that are told to go somewhere: targets that lag when blocked, with bounded force.
 
@@ -32,13 +33,6 @@ void send_all(World<Real>& world, const Vec3d& offset, double speed = 2, double 
   for (std::size_t k = 0; k < world.pins().list.size(); ++k)
     REQUIRE(
         world.move_pin(world.pins().list[k].id, {centre_of(world, k) + offset, speed, max_force}));
-}
-
-Vec3d momentum(const World<float>& world) {
-  Vec3d sum = Vec3d::Zero();
-  for (std::size_t i = 0; i < world.state().v.size(); ++i)
-    sum += world.state().v[i].cast<double>() * static_cast<double>(world.model().mass[i]);
-  return sum;
 }
 
 }  // namespace
@@ -208,7 +202,7 @@ TEST_CASE("a pin arrives in its time, however wide it is and though its cloth fo
     send_all(world, Vec3d(0, 0, c.distance), speed_within(c.distance, seconds, tick), 1000);
     double mass = 0;
     for (const float m : world.model().mass) mass += static_cast<double>(m);
-    const Vec3d before = momentum(world);
+    const Vec3d before = test::momentum(world);
     Vec3d given = Vec3d::Zero();
     int ticks = 0;
     for (; world.pins().any_moving() && ticks < 1000; ++ticks) {
@@ -220,7 +214,7 @@ TEST_CASE("a pin arrives in its time, however wide it is and though its cloth fo
                   << " s");
     CHECK(ticks * tick <= seconds + 1e-9);
     // What the pins are told to give is what the cloth has got, its folds among each other aside.
-    CHECK((momentum(world) - before - given).norm() < 1e-3 * mass);
+    CHECK((test::momentum(world) - before - given).norm() < 1e-3 * mass);
   }
 }
 

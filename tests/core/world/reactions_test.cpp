@@ -16,13 +16,6 @@ namespace {
 
 const Vec3d kGravity(0, -9.81, 0);
 
-Vec3d momentum(const World<double>& world) {
-  Vec3d sum = Vec3d::Zero();
-  for (std::size_t i = 0; i < world.state().v.size(); ++i)
-    sum += world.state().v[i] * world.model().mass[i];
-  return sum;
-}
-
 double mass_of(const World<double>& world) {
   double sum = 0;
   for (const double m : world.model().mass) sum += m;
@@ -63,10 +56,11 @@ TEST_CASE("in each tick objects get the momentum that gravity gave and the cloth
   world.measure_forces(true);
   Vec3d most = Vec3d::Zero();
   for (int tick = 0; tick < 40; ++tick) {
-    const Vec3d before = momentum(world);
+    const Vec3d before = test::momentum(world);
     REQUIRE_FALSE(world.step().divergence);
     const std::vector<Vec3d>& on = world.reactions()->colliders;
-    const Vec3d left = before + kGravity * mass_of(world) * world.tick_seconds() - momentum(world);
+    const Vec3d left =
+        before + kGravity * mass_of(world) * world.tick_seconds() - test::momentum(world);
     REQUIRE((on[0] + on[1] - left / world.tick_seconds()).norm() < 1e-12);
     for (int k = 0; k < 2; ++k) most[k] = std::max(most[k], -on[static_cast<std::size_t>(k)][1]);
   }
@@ -101,9 +95,9 @@ TEST_CASE("in each tick pins and hands give what momentum the cloth gains beside
   // Dashpots of a mesh see how far its strains have changed, which is a velocity but for the step.
   const double accuracy = solver == "mesh" ? 1e-3 : 1e-9;
   for (int tick = 0; tick < (solver == "guarded" ? 10 : 30); ++tick) {
-    const Vec3d before = momentum(world);
+    const Vec3d before = test::momentum(world);
     REQUIRE_FALSE(world.step().divergence);
-    const Vec3d gained = (momentum(world) - before) / world.tick_seconds();
+    const Vec3d gained = (test::momentum(world) - before) / world.tick_seconds();
     Vec3d given = kGravity * mass_of(world);
     for (const PinReaction& pin : world.reactions()->pins) given += pin.force;
     for (const Grab<double>& grab : world.grabs().list) given += grab.told;
@@ -125,7 +119,7 @@ TEST_CASE("what implicit tells of pins carries a swinging cloth, to 2 % over a s
     given += world.reactions()->pins[0].force * world.tick_seconds();
   }
   const double weight = mass_of(world) * kGravity.norm(), seconds = kTicks * world.tick_seconds();
-  const Vec3d gained = momentum(world) - kGravity * mass_of(world) * seconds;
+  const Vec3d gained = test::momentum(world) - kGravity * mass_of(world) * seconds;
   CHECK((given - gained).norm() < 0.02 * weight * seconds);
 }
 
